@@ -1,0 +1,74 @@
+"""Every error a user can meet, each with its exit code.
+
+The command line prints the message of a `GoniosimError` as one line (a
+`ConfigError` may carry one line per mistake) and leaves with ``exit_code``;
+a traceback appears only with ``--debug``.
+
+====  =========================================================
+code  meaning
+====  =========================================================
+0     success
+1     an unexpected fault: a bug in goniosim
+2     the command line itself is wrong (unknown option, ...)
+3     the scene file or an override is wrong
+4     the output cannot be written (permission, disk full, ...)
+5     the file is not a goniosim result
+6     the file is a goniosim result, but damaged
+7     the file was written by a newer, incompatible goniosim
+8     the result cannot be used for what was asked
+130   stopped by Ctrl-C; what was gathered is in the output file
+143   stopped by SIGTERM; what was gathered is in the output file
+====  =========================================================
+"""
+
+
+class GoniosimError(Exception):
+    """Base of all errors that are explained to the user in one line."""
+
+    exit_code = 1
+
+
+class ConfigError(GoniosimError):
+    """The scene file, or an override of it, is wrong.
+
+    Parameters
+    ----------
+    problems : str or list of str
+        One line for each mistake, all mistakes at once.
+    """
+
+    exit_code = 3
+
+    def __init__(self, problems):
+        self.problems = [problems] if isinstance(problems, str) else list(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class OutputError(GoniosimError):
+    """The output cannot be written."""
+
+    exit_code = 4
+
+
+class ForeignFileError(GoniosimError):
+    """The file is not a goniosim result."""
+
+    exit_code = 5
+
+
+class DamagedFileError(GoniosimError):
+    """The file is a goniosim result whose content is truncated or altered."""
+
+    exit_code = 6
+
+
+class NewerSchemaError(GoniosimError):
+    """The file follows a schema version that this goniosim cannot read."""
+
+    exit_code = 7
+
+
+class UnusableResultError(GoniosimError):
+    """The file is sound, but it lacks what the command needs."""
+
+    exit_code = 8
