@@ -1,0 +1,83 @@
+"""The two decorators under which all compiled code is written, and where the compiled code is kept.
+
+``scalar``
+    Pure functions of numbers. They are inlined into the loops that call them, so that
+    the loops stay straight-line code that LLVM turns into SIMD instructions.
+``kernel``
+    Functions over arrays, called from Python. They release the GIL and are cached on disk.
+
+Numba's cache looks only at the file that holds a function, not at the functions inlined into
+it. The cache folder is therefore named after a hash of every source file that may contain
+compiled code: an edit anywhere means a new folder, never stale machine code.
+"""
+
+import hashlib
+import os
+import platform
+import tempfile
+from pathlib import Path
+
+import numba
+from numba import njit
+
+# Which liberties the compiler may take with floating point:
+#   contract  fused multiply-add
+#   reassoc   sums in any order: without it no reduction becomes SIMD code
+#   nsz       the sign of zero does not matter
+#   arcp      x / y may become x * (1 / y)
+# Deliberately absent: nnan and ninf. They would let the compiler delete the selects that
+# discard the NaN or Inf of a branch not taken (total internal reflection, grazing rays).
+FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
+
+_PACKAGE = Path(__file__).resolve().parent
+_COMPILED = ("optics", "slices", "engine")
+
+
+def source_hash():
+    """Hash of all sources that may hold compiled code, of numba's version and of its setting."""
+    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
+    for folder in _COMPILED:
+        for path in sorted((_PACKAGE / folder).rglob("*.py")):
+            digest.update(path.name.encode())
+            digest.update(path.read_bytes())
+    digest.update(Path(__file__).read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _writable_folder(candidates):
+    for folder in candidates:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=folder):
+                return folder
+        except OSError:
+            continue
+    return None
+
+
+def _cache_folder():
+    """First writable of: $XDG_CACHE_HOME or ~/.cache, then the system's temporary folder."""
+    name = f"goniosim-{source_hash()}"
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+    user = os.getuid() if hasattr(os, "getuid") else "user"
+    return _writable_folder([home / "goniosim" / name, Path(tempfile.gettempdir()) / f"goniosim-{user}" / name])
+
+
+if "NUMBA_CACHE_DIR" not in os.environ:
+    _folder = _cache_folder()
+    CACHED = _folder is not None
+    if CACHED:
+        numba.config.CACHE_DIR = str(_folder)
+else:
+    CACHED = True
+
+
+def scalar(function):
+    """Compile a pure function of numbers, to be inlined into its callers."""
+    return njit(inline="always", error_model="numpy", fastmath=FASTMATH)(function)
+
+
+def kernel(function):
+    """Compile a function over arrays; cached on disk, releases the GIL."""
+    # error_model="numpy": the check for division by zero of the default blocks SIMD.
+    return njit(cache=CACHED, nogil=True, error_model="numpy", fastmath=FASTMATH)(function)

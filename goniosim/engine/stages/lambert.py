@@ -1,0 +1,34 @@
+"""Lambertian base: reflects rho, in a direction that has forgotten where the ray came from."""
+
+from ..._jit import kernel
+from ...optics.lambert import sample_cosine
+from ...optics.random import derive_key, uniform
+from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, X, Y, Z
+
+RHO = 0
+
+
+@kernel
+def scatter(batch, n, spectral, key, scratch, ledger):
+    """Scatter ``n`` rays; ``spectral`` holds the reflectance rho of every channel."""
+    _sample(batch[X], batch[Y], batch[Z], n, key, scratch[GAIN], scratch[TRANSMITTED])
+    for c in range(spectral.shape[1]):
+        rho = spectral[RHO, c]
+        weight = batch[WEIGHT + c]
+        absorbed = 0.0
+        for i in range(n):
+            before = weight[i]
+            after = before * rho
+            weight[i] = after
+            absorbed += before - after
+        ledger[ABSORBED_BASE, c] += absorbed
+
+
+@kernel
+def _sample(x, y, z, n, key, gain, transmitted):
+    height_key = derive_key(key, 0)
+    azimuth_key = derive_key(key, 1)
+    for i in range(n):
+        x[i], y[i], z[i] = sample_cosine(uniform(height_key, i), uniform(azimuth_key, i))
+        gain[i] = 1.0
+        transmitted[i] = 0.0

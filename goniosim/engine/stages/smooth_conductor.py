@@ -1,0 +1,34 @@
+"""Perfectly smooth opaque conductor: Fresnel reflectance per channel, mirror direction."""
+
+from ..._jit import kernel
+from ...optics.fresnel import fresnel_conductor
+from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, Z
+
+ETA, KAPPA = 0, 1
+
+
+@kernel
+def scatter(batch, n, spectral, scratch, ledger):
+    """Scatter ``n`` rays; ``spectral`` holds the relative eta and kappa of every channel."""
+    gain = scratch[GAIN]
+    transmitted = scratch[TRANSMITTED]
+    for i in range(n):
+        gain[i] = 1.0
+        transmitted[i] = 0.0
+    absorb_in_conductor(batch, n, spectral, batch[Z], ledger)
+
+
+@kernel
+def absorb_in_conductor(batch, n, spectral, cosines, ledger):
+    """Multiply the weights by the Fresnel reflectance and book what is absorbed."""
+    for c in range(spectral.shape[1]):
+        eta = spectral[ETA, c]
+        kappa = spectral[KAPPA, c]
+        weight = batch[WEIGHT + c]
+        absorbed = 0.0
+        for i in range(n):
+            before = weight[i]
+            after = before * fresnel_conductor(cosines[i], eta, kappa)
+            weight[i] = after
+            absorbed += before - after
+        ledger[ABSORBED_BASE, c] += absorbed

@@ -1,0 +1,235 @@
+"""The random walk, sorted by event instead of by ray.
+
+Every interface has two queues, of rays arriving from above and from below. The fullest queue is
+served: a batch of its rays meets the interface in one straight-line loop (`stages.scatter`), then
+every ray is routed to a neighbouring queue or out of the stack. All rays of a batch meet the
+same kind of interface from the same side, so the loops have no branches, and a scene runs only
+the code of the layers it has.
+"""
+
+from .._jit import kernel
+from ..optics.random import derive_key
+from . import tally
+from .layout import (
+    BOOST,
+    EVENTS,
+    GAIN,
+    LEFT,
+    LOST_CAP,
+    REFLECTED_DIRECT,
+    REFLECTED_INTERNAL,
+    ROUNDS,
+    STAGES,
+    TRANSMITTED,
+    TRANSMITTED_OUT,
+    WEIGHT,
+    X,
+    Z,
+)
+from .stages import scatter
+from .stages.travel import absorb, drop_dead, roulette
+
+ABOVE, BELOW = 0, 1
+
+# Stages per queue that a work unit may run after its last ray was launched. Rays that are still
+# on their way then are booked as lost. No ray is cut before it has met this many interfaces.
+MAX_ROUNDS = 10_000
+
+
+@kernel
+def walk(stack, light, unit_key, budget, state, filled, queues, work, scratch, places, exits, n_exits, ledger, cells):
+    """Advance one work unit by about ``budget`` events; returns whether it is finished.
+
+    Parameters
+    ----------
+    stack : tuple
+        Interface and medium tables of `plan.Plan.tables`.
+    light : ndarray, shape (3,)
+        Unit vector to the light.
+    unit_key : uint64
+        Key of the work unit's random numbers.
+    budget : int
+        Events after which to return to the caller, who looks at signals.
+    state : ndarray of int64, shape (N_STATE,)
+        Where the unit stands.
+    filled : ndarray of int64, shape (2 K,)
+        Number of rays in each queue.
+    queues : ndarray, shape (2 K, fields, capacity)
+    work, scratch, places : ndarray
+        One batch, its scratch rows and two rows of indices.
+    exits, n_exits : ndarray, shapes (2, fields, capacity) and (2,)
+        Rays that left upwards and downwards and await their cell.
+    ledger : ndarray, shape (N_LEDGER, channels)
+    cells : tuple
+        What `tally.flush` needs.
+    """
+    kinds, alphas, etas, spectral, forgets, taus, absorbs, with_orders = stack
+    n_interfaces = kinds.shape[0]
+    batch_size = work.shape[1]
+    channels = ledger.shape[1]
+    stop_at = state[EVENTS] + budget
+    while state[EVENTS] < stop_at:
+        q = _fullest(filled)
+        key = derive_key(unit_key, state[STAGES])
+        state[STAGES] += 1
+        if filled[q] < batch_size and state[LEFT] > 0:
+            n = min(batch_size, state[LEFT])
+            state[LEFT] -= n
+            _launch(work, n, light)
+            q = 0
+            gambled = False
+        elif filled[q] == 0:
+            _leave(0, exits, n_exits, cells, 1)
+            _leave(1, exits, n_exits, cells, 1)
+            return True
+        else:
+            if state[LEFT] == 0:
+                state[ROUNDS] += 1
+                if state[ROUNDS] > MAX_ROUNDS * filled.shape[0]:
+                    _cut(queues, filled, ledger)
+                    continue
+            n = min(batch_size, filled[q])
+            filled[q] -= n
+            _pop(queues[q], filled[q], work, n, Z if forgets[q // 2] else X)
+            medium = q // 2 - 1 if q % 2 == ABOVE else q // 2
+            if absorbs[medium]:
+                absorb(work, n, taus[medium], scratch[BOOST], ledger)
+            gambled = roulette(work, n, channels, scratch[BOOST], key, ledger)
+
+        k = q // 2
+        side = q % 2
+        state[EVENTS] += n
+        if with_orders and k == 0:
+            _count_order(work[WEIGHT + channels], n)
+        eta = etas[k] if side == ABOVE else 1.0 / etas[k]
+        scatter(kinds[k], work, n, alphas[k], eta, spectral[k], key, scratch, ledger)
+        if gambled:
+            drop_dead(scratch[GAIN], n, scratch[BOOST])
+
+        n_reflected, n_through = _sort(scratch[GAIN], scratch[TRANSMITTED], n, places[0], places[1])
+        for through in range(2):
+            count = n_through if through else n_reflected
+            if count == 0:
+                continue
+            up = (through == 1) == (side == BELOW)
+            if up and k == 0:
+                if side == ABOVE:
+                    _book_direct(work, places[0], count, ledger)
+                else:
+                    _gather(work, n, places[through], count, exits[0], n_exits[0], X)
+                    _book(exits[0], n_exits[0], count, ledger, REFLECTED_INTERNAL)
+                    n_exits[0] += count
+                    _leave(0, exits, n_exits, cells, batch_size)
+            elif not up and k == n_interfaces - 1:
+                _gather(work, n, places[through], count, exits[1], n_exits[1], X)
+                _book(exits[1], n_exits[1], count, ledger, TRANSMITTED_OUT)
+                n_exits[1] += count
+                _leave(1, exits, n_exits, cells, batch_size)
+            else:
+                target = 2 * (k - 1) + BELOW if up else 2 * (k + 1) + ABOVE
+                first = Z if forgets[target // 2] else X
+                _gather(work, n, places[through], count, queues[target], filled[target], first)
+                filled[target] += count
+    return False
+
+
+@kernel
+def _fullest(filled):
+    best = 0
+    for q in range(1, filled.shape[0]):
+        if filled[q] > filled[best]:
+            best = q
+    return best
+
+
+@kernel
+def _launch(work, n, light):
+    for field in range(work.shape[0]):
+        value = 1.0
+        if field < WEIGHT:
+            value = light[field]
+        row = work[field]
+        for i in range(n):
+            row[i] = value
+
+
+@kernel
+def _pop(queue, start, work, n, first):
+    for field in range(first, work.shape[0]):
+        source = queue[field][start : start + n]
+        row = work[field]
+        for i in range(n):
+            row[i] = source[i]
+
+
+@kernel
+def _sort(gain, transmitted, n, reflected_places, through_places):
+    """List the places of the rays that were reflected and of those that went through."""
+    n_reflected = 0
+    n_through = 0
+    for i in range(n):
+        alive = 1 if gain[i] > 0.0 else 0
+        through = alive if transmitted[i] > 0.0 else 0
+        reflected_places[n_reflected] = i
+        through_places[n_through] = i
+        n_through += through
+        n_reflected += alive - through
+    return n_reflected, n_through
+
+
+@kernel
+def _gather(work, n, places, count, queue, start, first):
+    for field in range(first, work.shape[0]):
+        source = work[field]
+        row = queue[field][start : start + count]
+        if count == n:
+            for i in range(n):
+                row[i] = source[i]
+        else:
+            for i in range(count):
+                row[i] = source[places[i]]
+
+
+@kernel
+def _book(batch, start, count, ledger, entry):
+    for c in range(ledger.shape[1]):
+        weight = batch[WEIGHT + c][start : start + count]
+        total = 0.0
+        for i in range(count):
+            total += weight[i]
+        ledger[entry, c] += total
+
+
+@kernel
+def _book_direct(work, places, count, ledger):
+    for c in range(ledger.shape[1]):
+        weight = work[WEIGHT + c]
+        total = 0.0
+        for i in range(count):
+            total += weight[places[i]]
+        ledger[REFLECTED_DIRECT, c] += total
+
+
+@kernel
+def _count_order(order, n):
+    for i in range(n):
+        order[i] += 1.0
+
+
+@kernel
+def _cut(queues, filled, ledger):
+    for q in range(filled.shape[0]):
+        for c in range(ledger.shape[1]):
+            weight = queues[q, WEIGHT + c]
+            total = 0.0
+            for i in range(filled[q]):
+                total += weight[i]
+            ledger[LOST_CAP, c] += total
+        filled[q] = 0
+
+
+@kernel
+def _leave(side, exits, n_exits, cells, threshold):
+    if n_exits[side] >= threshold:
+        tally.flush(side, exits[side], n_exits[side], cells)
+        n_exits[side] = 0

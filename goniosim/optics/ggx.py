@@ -1,0 +1,49 @@
+"""The GGX distribution of microfacets (Trowbridge-Reitz; Walter et al. 2007), isotropic."""
+
+import math
+
+from .._jit import scalar
+
+
+@scalar
+def ggx_density(sin2_h, cos_h, alpha):
+    """Density D(h) of microfacet normals, in 1/sr.
+
+    ``sin2_h`` and ``cos_h`` are given separately because cos^2 (alpha^2 - 1) + 1, written as
+    alpha^2 cos^2 + sin^2, keeps its digits for narrow distributions.
+    """
+    t = alpha * alpha * cos_h * cos_h + sin2_h
+    return alpha * alpha / (math.pi * t * t) if cos_h > 0.0 else 0.0
+
+
+@scalar
+def smith_g1(cos_w, alpha):
+    """Smith masking G1 = 1 / (1 + Lambda) of a direction at ``cos_w`` from the normal; 0 below."""
+    root = math.sqrt(cos_w * cos_w + alpha * alpha * (1.0 - cos_w * cos_w))
+    return 2.0 * cos_w / (cos_w + root) if cos_w > 0.0 else 0.0
+
+
+@scalar
+def sample_visible_normal(x, y, z, alpha, cosine, sine, u):
+    """A microfacet normal as seen from the unit direction (x, y, z), z > 0.
+
+    The density is G1 D(m) max(0, w.m) / w_z. In the space where the microfacets form a
+    hemisphere, the mirror image of the view is uniform on a spherical cap (Dupuy and
+    Benyoub 2023): ``cosine`` and ``sine`` are those of a uniform azimuth, and ``u``,
+    uniform in [0, 1), sets the height on the cap.
+    """
+    sx = alpha * x
+    sy = alpha * y
+    inverse = 1.0 / math.sqrt(sx * sx + sy * sy + z * z)
+    sx *= inverse
+    sy *= inverse
+    sz = z * inverse
+    # The height of the cap's point plus sz, formed without subtracting: it is the z of the
+    # half vector, whose smallness decides the tails of narrow distributions.
+    hz = (1.0 - u) * (1.0 + sz)
+    cap_z = hz - sz
+    ring = math.sqrt(max(0.0, 1.0 - cap_z * cap_z))
+    hx = alpha * (ring * cosine + sx)
+    hy = alpha * (ring * sine + sy)
+    inverse = 1.0 / math.sqrt(hx * hx + hy * hy + hz * hz)
+    return hx * inverse, hy * inverse, hz * inverse
