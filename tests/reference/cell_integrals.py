@@ -1,9 +1,8 @@
 """Integrals of a flux density over every cell of a slice, by adaptive quadrature.
 
-Independent of goniosim.slices: the cells are described here once more. A
-density is a function of (cos_l, cos_v, cos_d, tan2_h) with cos_d = l.h and
-tan2_h the squared tangent of the polar angle of the half vector h; it must be
-mirror symmetric about the plane of incidence, as isotropic materials are.
+Independent of goniosim.slices: the cells are described here once more. The
+densities are those of `reference.closed_forms`; they must be mirror symmetric
+about the plane of incidence, as isotropic materials are.
 """
 
 import math
@@ -11,7 +10,7 @@ import math
 import numpy as np
 
 RELATIVE_TOLERANCE = 1e-7
-ABSOLUTE_TOLERANCE = 1e-13
+ABSOLUTE_TOLERANCE = 1e-12
 MAX_HALVINGS = 40
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -78,13 +77,11 @@ def _classic_integrand(density, theta_l, boxes):
     a0, a1, b0, b1 = (edge[:, None, None] for edge in boxes)
     theta = 0.5 * (a0 + a1) + 0.5 * (a1 - a0) * _NODES[:, None]
     phi = 0.5 * (b0 + b1) + 0.5 * (b1 - b0) * _NODES[None, :]
-    sin_v, cos_v = np.sin(theta), np.cos(theta)
-    sin_l, cos_l = math.sin(theta_l), math.cos(theta_l)
-    hx, hy, hz = sin_l + sin_v * np.cos(phi), sin_v * np.sin(phi), cos_l + cos_v
-    in_plane2 = hx * hx + hy * hy
-    # |l + v| = 2 l.h for unit vectors
-    cos_d = 0.5 * np.sqrt(in_plane2 + hz * hz)
-    value = density(cos_l, cos_v, cos_d, in_plane2 / (hz * hz)) * sin_v
+    sin_v = np.sin(theta)
+    value = density(
+        math.sin(theta_l), math.cos(theta_l), sin_v * np.cos(phi), sin_v * np.sin(phi), np.cos(theta)
+    )
+    value = value * sin_v
     weight = 0.25 * (boxes[1] - boxes[0]) * (boxes[3] - boxes[2])
     return weight * np.einsum("nij,i,j->n", value, _WEIGHTS, _WEIGHTS)
 
@@ -105,7 +102,9 @@ def _half_integrand(density, theta_l, boxes):
     theta_h = u * u * (2.0 / math.pi)
     sin_h, cos_h = np.sin(theta_h), np.cos(theta_h)
     cos_d = sin_l * sin_h * np.cos(phi) + cos_l * cos_h
-    cos_v = np.maximum(2.0 * cos_d * cos_h - cos_l, 0.0)
+    x = 2.0 * cos_d * sin_h * np.cos(phi) - sin_l
+    y = 2.0 * cos_d * sin_h * np.sin(phi)
+    z = np.maximum(2.0 * cos_d * cos_h - cos_l, 0.0)
     jacobian = 4.0 * cos_d * sin_h * u * (4.0 / math.pi)
-    value = density(cos_l, cos_v, cos_d, (sin_h / cos_h) ** 2) * jacobian * (0.5 * width)
+    value = density(sin_l, cos_l, x, y, z) * jacobian * (0.5 * width)
     return 0.5 * (boxes[3] - boxes[2]) * np.einsum("nij,i,j->n", value, _WEIGHTS, _WEIGHTS)

@@ -3,6 +3,9 @@
 Nothing here uses goniosim. Directions point away from the surface, the light
 stands at phi = 0, and densities are *flux densities*: the fraction of the
 incident flux that leaves per steradian, which is the BSDF times cos(theta_v).
+They take (sin_l, cos_l, x, y, z): the light is (sin_l, 0, cos_l), and (x, y, z)
+leads to the viewer, where z >= 0 is the height above the horizon for reflection
+and the depth below it for transmission.
 """
 
 import math
@@ -60,19 +63,21 @@ def internal_reflectance(n, tau=0.0):
     return below + above
 
 
-def plastic_density(n, rho, tau=0.0):
-    """Internal flux density of a smooth coat over a Lambertian base, as a function of cos(theta_v).
+def plastic_density(n, rho, tau=0.0, power=1):
+    """Internal flux density of a smooth coat over a Lambertian base.
 
-    Returns
-    -------
-    function (cos_l, cos_v) -> density
+    ``power = 2`` gives the second moment instead: every interaction multiplies
+    a ray's weight by rho or by exp(-tau / cos), so the square of the weight
+    follows the same law with rho^2 and 2 tau where these are weights, while
+    the coat's reflectance, a probability, stays as it is.
     """
+    rho, tau = rho**power, tau * power
     bounce = rho / (1.0 - rho * internal_reflectance(n, tau))
 
-    def density(cos_l, cos_v):
-        in_l, in_v = refracted_cosine(cos_l, n), refracted_cosine(cos_v, n)
-        crossing = (1.0 - fresnel_dielectric(cos_l, n)) * (1.0 - fresnel_dielectric(cos_v, n))
-        return crossing * np.exp(-tau / in_l - tau / in_v) * bounce * cos_v / (math.pi * n * n)
+    def density(sin_l, cos_l, x, y, z):
+        in_l, in_v = refracted_cosine(cos_l, n), refracted_cosine(z, n)
+        crossing = (1.0 - fresnel_dielectric(cos_l, n)) * (1.0 - fresnel_dielectric(z, n))
+        return crossing * np.exp(-tau / in_l - tau / in_v) * bounce * z / (math.pi * n * n)
 
     return density
 
@@ -80,7 +85,11 @@ def plastic_density(n, rho, tau=0.0):
 def plastic_albedo(cos_l, n, rho, tau=0.0):
     """Internal albedo of a smooth coat over a Lambertian base."""
     density = plastic_density(n, rho, tau)
-    return quad(lambda c: 2.0 * math.pi * float(density(cos_l, c)), 0.0, 1.0, epsabs=1e-13, epsrel=1e-11)[0]
+
+    def ring(z):
+        return 2.0 * math.pi * float(density(None, cos_l, None, None, z))
+
+    return quad(ring, 0.0, 1.0, epsabs=1e-13, epsrel=1e-11)[0]
 
 
 # --- smooth stacks ----------------------------------------------------------------------------
@@ -117,7 +126,12 @@ WHITE_GGX_ALPHA_1_NORMAL = 1.0 - math.log(2.0)
 """Single-scattering albedo of a lossless GGX surface, alpha = 1, at normal incidence."""
 
 
-# --- rough conductor --------------------------------------------------------------------------
+# --- one rough interface ----------------------------------------------------------------------
+
+
+def ggx(tan2_h, alpha):
+    """Density of facet normals, for the squared tangent of the angle between normal and surface."""
+    return alpha**2 * (1.0 + tan2_h) ** 2 / (math.pi * (alpha**2 + tan2_h) ** 2)
 
 
 def smith_g1(cos_v, alpha):
@@ -126,23 +140,52 @@ def smith_g1(cos_v, alpha):
     return 2.0 * cos_v / (cos_v + np.sqrt(cos_v**2 + alpha**2 * (1.0 - cos_v**2)))
 
 
-def conductor_density(alpha, eta, kappa, power=1):
-    """Reflected flux density of a bare rough conductor: D G1 G1 F / (4 cos_l), Walter et al. 2007.
+def reflection_density(alpha, n, power=1):
+    """Direct flux density of one rough interface: D G1 G1 F / (4 cos_l), Walter et al. 2007.
 
-    With visible normals a ray that leaves along v carries the weight
-    ``F G1(v)``. ``power = 2`` gives the density times that weight, whose
-    integral over a cell is the second moment of what one ray deposits in it.
-
-    Returns
-    -------
-    function (cos_l, cos_v, cos_d, tan2_h) -> density
-        ``cos_d`` is l.h, ``tan2_h`` the squared tangent of the polar angle of h.
+    ``n`` is the relative index, real or complex. With visible normals, a ray
+    reflected by a conductor carries the weight F G1(v); ``power = 2`` gives the
+    density times that weight, whose integral over a cell is the second moment
+    of what one ray deposits there. At a dielectric F is a probability and the
+    weight is G1(v) alone.
     """
 
-    def density(cos_l, cos_v, cos_d, tan2_h):
-        cos2_h = 1.0 / (1.0 + tan2_h)
-        d = alpha**2 / (math.pi * cos2_h**2 * (alpha**2 + tan2_h) ** 2)
-        weight = fresnel_conductor(cos_d, complex(eta, kappa)) * smith_g1(cos_v, alpha)
-        return d * smith_g1(cos_l, alpha) * weight**power / (4.0 * cos_l)
+    def density(sin_l, cos_l, x, y, z):
+        hx, hy, hz = sin_l + x, y, cos_l + z
+        in_plane2 = hx * hx + hy * hy
+        # |l + v| = 2 l.h for unit vectors
+        cos_d = np.minimum(1.0, 0.5 * np.sqrt(in_plane2 + hz * hz))
+        visible = smith_g1(z, alpha)
+        if np.iscomplexobj(n):
+            fresnel = fresnel_conductor(cos_d, n)
+            moment = (fresnel * visible) ** power
+        else:
+            moment = fresnel_dielectric(cos_d, n) * visible**power
+        return ggx(in_plane2 / (hz * hz), alpha) * smith_g1(cos_l, alpha) * moment / (4.0 * cos_l)
+
+    return density
+
+
+def transmission_density(alpha, n, power=1):
+    """Flux density through one rough dielectric interface of relative index ``n`` (not 1).
+
+    Eq. 21 of Walter et al. 2007 times the cosine, as flux: without the factor
+    that turns it into radiance. ``power`` as in `reflection_density`.
+    """
+
+    def density(sin_l, cos_l, x, y, z):
+        # l + n v is normal to the facet; it points into the medium of lower index.
+        hx, hy, hz = sin_l + n * x, n * y, cos_l - n * z
+        length2 = hx * hx + hy * hy + hz * hz
+        upwards = np.sign(hz) / np.sqrt(length2)
+        cos_i = (sin_l * hx + cos_l * hz) * upwards
+        cos_o = -(x * hx + y * hy - z * hz) * upwards
+        possible = (cos_i > 0.0) & (cos_o > 0.0)
+        cos_i, cos_o = np.where(possible, cos_i, 1.0), np.where(possible, cos_o, 0.0)
+        jacobian = n * n * cos_o / length2
+        through = 1.0 - fresnel_dielectric(np.minimum(cos_i, 1.0), n)
+        tan2_h = (hx * hx + hy * hy) / np.where(possible, hz * hz, 1.0)
+        lit = smith_g1(cos_l, alpha) * cos_i / cos_l
+        return ggx(tan2_h, alpha) * lit * jacobian * through * smith_g1(z, alpha) ** power
 
     return density
