@@ -1,0 +1,170 @@
+"""Every dataset and attribute of a result file in one table.
+
+The writer and the reader follow this table, and a test holds `data_schema.md`
+against it. Upper-case parts of a path stand for names that vary:
+``COMPONENT`` for a component or one of its orders
+(``reflection/internal/order_2``), ``ENTRY`` for an entry of the audit,
+``SAMPLED`` for a component with ``_`` in place of ``/``.
+"""
+
+import re
+from dataclasses import dataclass
+
+from goniosim.result import AUDIT_ENTRIES
+
+FILETYPE = "goniosim-result"
+SCHEMA_VERSION = "1.0"
+COMPONENTS = ("reflection/direct", "reflection/internal", "transmission")
+
+SIZES = {
+    "direction": "M",
+    "channel": "C",
+    "row": "R",
+    "column": "K",
+    "row_edges": "R + 1",
+    "column_edges": "K + 1",
+    "rays": "P",
+}
+
+# netCDF wants the scale of a dimension in the group of its users or above it.
+SCALES = {
+    "direction": "direction",
+    "channel": "channel",
+    "row": "row",
+    "column": "column",
+    "row_edges": "cells/row_edges",
+    "column_edges": "cells/column_edges",
+    "rays": "cost/rays",
+}
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """One dataset, or one family of datasets, of a result file.
+
+    Attributes
+    ----------
+    path : str
+        Path in the file, with upper-case placeholders.
+    dims : tuple of str
+        Names of the axes; their lengths are in `SIZES`.
+    dtype : str
+        ``float64``, ``int64``, ``bool`` or ``text``.
+    unit, meaning : str
+        Written to the attributes ``units`` and ``long_name``.
+    """
+
+    path: str
+    dims: tuple[str, ...]
+    dtype: str
+    unit: str
+    meaning: str
+
+    @property
+    def is_scale(self):
+        """Whether this dataset is the scale of a dimension."""
+        return self.path in SCALES.values()
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """One attribute, or one family of attributes, of a group (``/``: of the root)."""
+
+    group: str
+    name: str
+    dtype: str
+    meaning: str
+
+
+_SLICE = ("direction", "channel", "row", "column")
+_CELL = ("direction", "row", "column")
+_TOTAL = ("direction", "channel")
+
+DATASETS = (
+    Dataset("direction", ("direction",), "int64", "1", "number of the incident direction"),
+    Dataset("channel", ("channel",), "text", "1", "name of the colour channel"),
+    Dataset("row", ("row",), "float64", "degree", "row coordinate at the centre of the row"),
+    Dataset("column", ("column",), "float64", "degree", "azimuth at the centre of the column"),
+    Dataset("incident/theta_deg", ("direction",), "float64", "degree", "polar angle of the incident light"),
+    Dataset("incident/phi_deg", ("direction",), "float64", "degree", "azimuth of the incident light"),
+    Dataset("incident/rays", ("direction",), "int64", "1", "rays traced from the direction"),
+    Dataset("channels/name", ("channel",), "text", "1", "name of the colour channel"),
+    Dataset("cells/row_edges", ("row_edges",), "float64", "degree",
+            "row coordinate at the edges of the rows"),
+    Dataset("cells/column_edges", ("column_edges",), "float64", "degree",
+            "azimuth at the edges of the columns"),
+    Dataset("cells/valid", _CELL, "bool", "1", "whether the cell lies wholly above the horizon"),
+    Dataset("cells/solid_angle", _CELL, "float64", "sr", "solid angle of the part above the horizon"),
+    Dataset("cells/projected_solid_angle", _CELL, "float64", "sr",
+            "integral of cos(theta_v) over the part above the horizon"),
+    Dataset("COMPONENT/energy", _SLICE, "float64", "1", "fraction of the incident flux"),
+    Dataset("COMPONENT/stderr", _SLICE, "float64", "1", "standard error of energy"),
+    Dataset("COMPONENT/bsdf", _SLICE, "float64", "sr-1", "BSDF averaged over the cell"),
+    Dataset("COMPONENT/bsdf_stderr", _SLICE, "float64", "sr-1", "standard error of bsdf"),
+    Dataset("COMPONENT/hits", _CELL, "int64", "1", "paths that deposited energy in the cell"),
+    *(Dataset(f"audit/{entry}", _TOTAL, "float64", "1", meaning) for entry, meaning in AUDIT_ENTRIES.items()),
+    Dataset("audit/ENTRY_stderr", _TOTAL, "float64", "1", "standard error of the audit entry"),
+    Dataset("audit/direct_integrated", _TOTAL, "float64", "1", "direct reflection integrated over the cells"),
+    Dataset("audit/direct_integrated_stderr", _TOTAL, "float64", "1", "standard error of direct_integrated"),
+    Dataset("cost/rays", ("rays",), "float64", "1", "rays per incident direction up to the checkpoint"),
+    Dataset("cost/seconds", ("rays",), "float64", "s", "elapsed time of tracing"),
+    Dataset("cost/cpu_seconds", ("rays",), "float64", "s", "processor time of tracing"),
+    Dataset("cost/error_SAMPLED", ("rays",), "float64", "sr-0.5", "noise floor of the component"),
+)
+
+ATTRIBUTES = (
+    Attribute("/", "filetype", "text", f"always `{FILETYPE}`"),
+    Attribute("/", "schema_version", "text", "version of this schema, MAJOR.MINOR"),
+    Attribute("/", "goniosim_version", "text", "version of the program that wrote the file"),
+    Attribute("/", "created_utc", "text", "time of the simulation, ISO 8601"),
+    Attribute("/", "config_yaml", "text", "the simulated scene, complete with defaults and overrides"),
+    Attribute("/", "config_hash", "text", "SHA-256 of `config_yaml` in UTF-8, hexadecimal"),
+    Attribute("/", "seed", "uint64", "seed of the random numbers"),
+    Attribute("/", "status", "text", "`complete`, or `partial` after an interruption"),
+    Attribute("/", "name", "text", "name of the material"),
+    Attribute("/", "PROVENANCE", "text", "any further text: versions, processor, threads"),
+    Attribute("cells", "parametrization", "text", "`classic` or `half`"),
+    Attribute("COMPONENT", "contains_delta", "int8", "1 if some energy leaves in exactly one direction"),
+    Attribute("effects", "EFFECT", "int8", "1 if the scene called for the effect, 0 if not"),
+)
+
+# Every other text attribute of the root comes from, and goes back to, `Result.provenance`.
+NOT_PROVENANCE = ("filetype", "schema_version", "config_yaml", "config_hash", "seed", "status", "name")
+
+_PLACEHOLDERS = {
+    "COMPONENT": rf"(?:{'|'.join(COMPONENTS)})(?:/order_\d+(?:_and_more)?)?",
+    "ENTRY": "|".join(AUDIT_ENTRIES),
+    "SAMPLED": "|".join(name.replace("/", "_") for name in COMPONENTS),
+}
+
+
+def _pattern(path):
+    for placeholder, expression in _PLACEHOLDERS.items():
+        path = path.replace(placeholder, f"(?:{expression})")
+    return re.compile(path)
+
+
+_PATTERNS = [(_pattern(dataset.path), dataset) for dataset in DATASETS]
+
+
+def describe(path):
+    """Find the row of the table that describes a dataset.
+
+    Parameters
+    ----------
+    path : str
+        Path in the file without a leading slash.
+
+    Returns
+    -------
+    Dataset
+
+    Raises
+    ------
+    KeyError
+        If the schema has no such dataset.
+    """
+    for pattern, dataset in _PATTERNS:
+        if pattern.fullmatch(path):
+            return dataset
+    raise KeyError(f"the schema has no dataset {path}")

@@ -1,0 +1,210 @@
+"""Getting bytes onto the disk: a place reserved before the computation, an atomic write after it."""
+
+import contextlib
+import errno
+import os
+import secrets
+import tempfile
+from pathlib import Path
+
+from goniosim.errors import OutputError
+from goniosim.store import userblock
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+class Reservation:
+    """Room for one output file: a temporary file beside it, of the predicted size.
+
+    A context manager: whatever is not committed is removed on the way out.
+
+    Parameters
+    ----------
+    target : Path
+        Where the file will stand.
+    shown : path-like
+        What the user calls it.
+
+    Raises
+    ------
+    OSError
+        If the folder takes no new file.
+    """
+
+    def __init__(self, target, shown):
+        self._target = target
+        self._shown = shown
+        # Hidden and not ending in .h5, so that nobody takes it for a result; cut, since names are limited.
+        self._temporary = target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
+        self._descriptor = os.open(self._temporary, flags, 0o666)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.release()
+
+    def allocate(self, size_bytes):
+        """Claim disk space.
+
+        Parameters
+        ----------
+        size_bytes : int
+
+        Raises
+        ------
+        OSError
+            If there is not enough.
+        """
+        # Asked first: where a file system cannot allocate, the C library writes block after block instead.
+        disk = os.fstatvfs(self._descriptor)
+        if disk.f_blocks and disk.f_bavail * disk.f_frsize < size_bytes:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        try:
+            os.posix_fallocate(self._descriptor, 0, max(1, size_bytes))
+        except (AttributeError, OSError) as error:
+            # Anything else means that this system or file system cannot allocate ahead.
+            if getattr(error, "errno", None) in _NO_ROOM:
+                raise
+
+    def commit(self, parts):
+        """Put the finished file in place: readers see the old file or the new one, never a mixture.
+
+        Parameters
+        ----------
+        parts : sequence of bytes
+            The content, one part after the other.
+
+        Raises
+        ------
+        OutputError
+            If the file cannot be written; the target is then as it was.
+        """
+        _refuse_to_destroy(self._target, self._shown)
+        try:
+            _write(self._descriptor, parts)
+            os.replace(self._temporary, self._target)
+        except OSError as error:
+            message = f"{self._shown}: cannot be written: {error.strerror}; {_remedy(error)}"
+            raise OutputError(message) from error
+        # The name itself survives a power cut only after this. Some network file systems refuse it.
+        with contextlib.suppress(OSError):
+            folder = os.open(self._target.parent, os.O_RDONLY)
+            try:
+                os.fsync(folder)
+            finally:
+                os.close(folder)
+
+    def release(self):
+        """Close and remove the temporary file, if it is still there."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+            with contextlib.suppress(OSError):
+                os.unlink(self._temporary)
+
+
+def reserve_output(path, size_bytes):
+    """Make sure, before a long computation, that its result can be written.
+
+    Parameters
+    ----------
+    path : path-like
+        Output file. An earlier result may stand there, but nothing else.
+    size_bytes : int
+        Predicted size, see `predicted_size`.
+
+    Returns
+    -------
+    Reservation
+        To be handed to `write_result`, or released.
+
+    Raises
+    ------
+    OutputError
+        If the file could not be written: no folder, no permission, no room,
+        or a file in the way that is not a goniosim result.
+    """
+    # A link stays a link: the file it names is the one to replace.
+    target = Path(os.path.realpath(path))
+    _refuse_to_destroy(target, path)
+    if not target.parent.is_dir():
+        what = "is not a folder" if target.parent.exists() else "does not exist"
+        raise OutputError(f"{path}: the folder {target.parent} {what}; create it, or choose another place")
+    try:
+        reservation = Reservation(target, path)
+    except OSError as error:
+        raise OutputError(
+            f"{path}: the folder {target.parent} takes no new file: {error.strerror}; {_remedy(error)}"
+        ) from error
+    try:
+        reservation.allocate(size_bytes)
+    except OSError as error:
+        reservation.release()
+        raise OutputError(
+            f"{path}: no room for about {size_bytes / 1e6:.1f} MB: {error.strerror}; {_remedy(error)}"
+        ) from error
+    except BaseException:
+        reservation.release()
+        raise
+    return reservation
+
+
+def rescue(parts, path):
+    """Save finished work in the temporary directory.
+
+    Parameters
+    ----------
+    parts : sequence of bytes
+        Content of the file.
+    path : path-like
+        Where it should have gone.
+
+    Returns
+    -------
+    str
+        What to tell the user.
+    """
+    directory = tempfile.gettempdir()
+    name = None
+    try:
+        descriptor, name = tempfile.mkstemp(prefix=Path(path).stem[:40] + "-", suffix=".h5", dir=directory)
+        try:
+            _write(descriptor, parts)
+        finally:
+            os.close(descriptor)
+    except OSError as error:
+        if name is not None:
+            os.unlink(name)
+        return f"nor could the result be saved in {directory}: {error.strerror}"
+    return f"the result was saved as {name} instead"
+
+
+def _refuse_to_destroy(target, shown):
+    if target.is_dir():
+        raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
+    if target.exists() and not userblock.is_result(target):
+        raise OutputError(
+            f"{shown}: exists and is not a goniosim result, so it is not overwritten; "
+            "choose another name or remove it"
+        )
+
+
+def _remedy(error):
+    if error.errno in _NO_ROOM:
+        return "free some space, raise the quota or the limit on file sizes, or choose another place"
+    return "check the permissions, or choose another place"
+
+
+def _write(descriptor, parts):
+    """Write, cut to length and sync."""
+    position = 0
+    for part in parts:
+        view = memoryview(part)
+        while view:
+            written = os.pwrite(descriptor, view, position)
+            position += written
+            view = view[written:]
+    os.ftruncate(descriptor, position)
+    os.fsync(descriptor)
