@@ -1,0 +1,148 @@
+"""Small results with the look of real ones, for tests that need a result but no simulation."""
+
+import numpy as np
+
+from goniosim.result import AUDIT_ENTRIES, Audit, Cells, Component, Cost, Result
+
+CONFIG = """\
+material:
+  name: synthetic
+  layers:
+    - interface: {type: dielectric, eta: 1.5, alpha: 0.2}
+    - medium: {tau: [0.05, 0.1, 0.8]}
+    - interface: {type: lambert, rho: 0.5}
+incident: {theta_deg: [0, 60]}
+"""
+
+
+def make_result(
+    theta_deg=(0.0, 60.0),
+    channels=("red", "green", "blue"),
+    rows=6,
+    columns=8,
+    *,
+    parametrization="classic",
+    components=("reflection/direct", "reflection/internal", "transmission"),
+    orders=0,
+    rays=100_000,
+    status="complete",
+    name="synthetic",
+    config_yaml=CONFIG,
+    seed=1,
+):
+    """Make up a result: hits are Poisson counts, energies carry continuous weights as absorption gives.
+
+    Parameters
+    ----------
+    theta_deg : sequence of float
+        Incident directions.
+    channels : sequence of str
+    rows, columns : int
+    parametrization : str
+        For ``half`` the last row is invalid; the solid angles stay those of ``classic``.
+    components : sequence of str
+    orders : int
+        Last order told apart in the components that are sampled; 0 for none.
+    rays : int
+        Rays per incident direction.
+    status, name, config_yaml : str
+    seed : int
+        Of the made-up numbers, and the seed that the result claims.
+
+    Returns
+    -------
+    Result
+    """
+    rng = np.random.default_rng(seed)
+    cells = _cells(parametrization, len(theta_deg), rows, columns)
+    made = {path: _component(path, rng, cells, len(channels), rays, orders) for path in components}
+    totals = {path: component.energy.sum(axis=(2, 3)) for path, component in made.items()}
+    return Result(
+        config_yaml=config_yaml,
+        name=name,
+        status=status,
+        seed=seed,
+        theta_deg=np.array(theta_deg, float),
+        phi_deg=np.zeros(len(theta_deg)),
+        rays=np.full(len(theta_deg), rays),
+        channels=list(channels),
+        cells=cells,
+        components=made,
+        audit=_audit(rng, totals, (len(theta_deg), len(channels)), rays),
+        cost=_cost(components, rays),
+        effects={"absorption": True, "colour": True, "orders": orders > 0, "transmission": False},
+        provenance={
+            "created_utc": "2024-05-01T12:00:00Z",
+            "goniosim_version": "0.1.0",
+            "processor": "imaginary",
+            "threads": "2",
+        },
+    )
+
+
+def _cells(parametrization, directions, rows, columns):
+    edges = np.linspace(0, np.pi / 2, rows + 1)
+    shape = (directions, rows, columns)
+    width = 2 * np.pi / columns
+    valid = np.ones(shape, bool)
+    if parametrization == "half":
+        valid[:, -1] = False
+    return Cells(
+        parametrization=parametrization,
+        row_edges=np.degrees(edges),
+        column_edges=np.linspace(0, 360, columns + 1),
+        valid=valid,
+        solid_angle=np.broadcast_to(-np.diff(np.cos(edges))[:, None] * width, shape).copy(),
+        projected_solid_angle=np.broadcast_to(np.diff(np.sin(edges) ** 2)[:, None] * width / 2, shape).copy(),
+    )
+
+
+def _component(path, rng, cells, channels, rays, orders):
+    # Each component gets about a quarter of the rays, spread as a Lambertian spreads them.
+    expected = rays / 4 * cells.projected_solid_angle / np.pi
+    hits = rng.poisson(expected)
+    shape = (len(hits), channels, *hits.shape[1:])
+    weight = rng.uniform(0.2, 0.8, (1, channels, 1, 1))
+    scatter = rng.normal(0, 0.3, shape) / np.sqrt(np.maximum(hits, 1))[:, None]
+    energy = hits[:, None] / rays * weight * np.exp(scatter)
+    stderr = np.sqrt(hits)[:, None] / rays * weight * np.exp(rng.normal(0, 0.01, shape))
+
+    sampled = path != "reflection/direct"
+    parts = {}
+    if sampled and orders:
+        names = [*(f"order_{number}" for number in range(2, orders + 1)), f"order_{orders + 1}_and_more"]
+        parts = {name: _component(path, rng, cells, channels, rays, 0) for name in names}
+    to_bsdf = np.where(cells.valid, 1 / cells.projected_solid_angle, 0.0)[:, None]
+    return Component(
+        energy=energy,
+        stderr=stderr,
+        bsdf=energy * to_bsdf,
+        bsdf_stderr=stderr * to_bsdf,
+        hits=hits.astype(np.int64) if sampled else None,
+        contains_delta=path == "transmission",
+        orders=parts,
+    )
+
+
+def _audit(rng, totals, shape, rays):
+    names = {
+        "reflected_direct": "reflection/direct",
+        "reflected_internal": "reflection/internal",
+        "transmitted": "transmission",
+    }
+    energy = {entry: totals.get(names.get(entry), np.zeros(shape)) for entry in AUDIT_ENTRIES}
+    energy["lost_masked_reflection"] = rng.uniform(0, 0.01, shape)
+    energy["absorbed_base"] = 1 - sum(energy.values())
+    stderr = {entry: np.sqrt(np.abs(value) / rays) for entry, value in energy.items()}
+    return Audit(energy, stderr, energy["reflected_direct"] * 1.0001, np.full(shape, 1e-9))
+
+
+def _cost(components, rays):
+    traced = rays * np.array([0.25, 0.5, 1.0])
+    sampled = [path for path in components if path != "reflection/direct"]
+    return Cost(
+        rays=traced,
+        seconds=traced / 1e7,
+        cpu_seconds=traced / 5e6,
+        error={path: 3 / np.sqrt(traced) for path in sampled},
+    )

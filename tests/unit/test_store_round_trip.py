@@ -1,0 +1,203 @@
+"""What is written is what is read."""
+
+import dataclasses
+import hashlib
+import time
+
+import h5py
+import numpy as np
+import pytest
+from synthetic import make_result
+
+from goniosim.result import AUDIT_ENTRIES
+from goniosim.store import open_result, predicted_size, read_header, write_result
+from goniosim.store.writer import encode
+
+
+def assert_same(one, other, where="result"):
+    """Equality of everything: types, shapes, dtypes, values to the last bit, keys of dictionaries."""
+    assert type(one) is type(other), where
+    if dataclasses.is_dataclass(one):
+        for field in dataclasses.fields(one):
+            assert_same(getattr(one, field.name), getattr(other, field.name), f"{where}.{field.name}")
+    elif isinstance(one, dict):
+        assert one.keys() == other.keys(), where
+        for key in one:
+            assert_same(one[key], other[key], f"{where}[{key}]")
+    elif isinstance(one, np.ndarray):
+        assert one.dtype == other.dtype, where
+        np.testing.assert_array_equal(one, other, err_msg=where)
+    else:
+        assert one == other, where
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"orders": 11, "parametrization": "half"},
+        {"components": ("reflection/direct", "reflection/internal"), "channels": ("grey",)},
+        {"components": ("reflection/direct",), "status": "partial", "seed": 2**64 - 1},
+        {"theta_deg": [30.0], "rows": 1, "columns": 1},
+    ],
+    ids=["full", "orders", "grey", "partial", "one-cell"],
+)
+def test_everything_comes_back(tmp_path, options):
+    """Eleven orders, because the names of order 10 and order 2 sort differently as text."""
+    written = make_result(**options)
+    write_result(written, tmp_path / "result.h5")
+    read = open_result(tmp_path / "result.h5")
+    assert_same(written, read)
+    for path, component in written.components.items():
+        assert list(component.orders) == list(read.components[path].orders)
+    assert list(read.components) == list(written.components)
+    assert list(read.audit.energy) == list(AUDIT_ENTRIES)
+
+
+def test_without_a_checkpoint(tmp_path):
+    """A run stopped at once has an empty cost table."""
+    written = make_result(status="partial")
+    empty = np.empty(0)
+    written.cost = dataclasses.replace(
+        written.cost, rays=empty, seconds=empty, cpu_seconds=empty, error={"transmission": empty}
+    )
+    write_result(written, tmp_path / "result.h5")
+    assert_same(written, open_result(tmp_path / "result.h5"))
+
+
+TEXTS = {"empty": "", "unicode": "é µ 漆 🎨\n\ttabbed", "long": "x: 1\n" * 50_000}
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS.keys())
+def test_any_text_comes_back(tmp_path, text):
+    """250 kB do not fit into an ordinary HDF5 attribute of 64 kB."""
+    written = make_result(config_yaml=text, name="漆器", channels=["赤", "green", "b"])
+    write_result(written, tmp_path / "result.h5")
+    assert_same(written, open_result(tmp_path / "result.h5"))
+    assert read_header(tmp_path / "result.h5")["config_yaml"] == text
+
+
+def test_text_that_is_not_unicode_does_not_stop_the_writing(tmp_path):
+    """A file name from the shell may hold stray bytes, which Python shows as lone surrogates."""
+    result = make_result()
+    result.provenance["command"] = "simulate caf\udce9.yaml"
+    write_result(result, tmp_path / "result.h5")
+    assert open_result(tmp_path / "result.h5").provenance["command"] == "simulate caf\\udce9.yaml"
+    assert read_header(tmp_path / "result.h5")["command"] == "simulate caf\\udce9.yaml"
+
+
+def test_header(tmp_path):
+    result = make_result(status="partial", seed=7)
+    write_result(result, tmp_path / "result.h5")
+    assert read_header(tmp_path / "result.h5") == {
+        "filetype": "goniosim-result",
+        "schema_version": "1.0",
+        "config_yaml": result.config_yaml,
+        "config_hash": hashlib.sha256(result.config_yaml.encode()).hexdigest(),
+        "seed": 7,
+        "status": "partial",
+        "name": "synthetic",
+        **result.provenance,
+    }
+
+
+def test_same_result_same_bytes():
+    """No clock goes in; HDF5 counts time in whole seconds."""
+    first = encode(make_result(orders=2))
+    time.sleep(1.1)
+    assert encode(make_result(orders=2)) == first
+
+
+def test_different_results_different_digests():
+    assert encode(make_result(seed=1))[0] != encode(make_result(seed=2))[0]
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_numbers_that_are_not_finite_are_refused(tmp_path, value):
+    result = make_result()
+    result.components["reflection/internal"].stderr[1, 2, 3, 4] = value
+    with pytest.raises(ValueError, match="reflection/internal/stderr holds NaN or infinity"):
+        write_result(result, tmp_path / "result.h5")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_contradictions_are_refused():
+    """Each of these is a fault of the program: it must not reach a file."""
+    wrong_shape = make_result()
+    wrong_shape.cells.valid = wrong_shape.cells.valid[:1]
+    wrong_type = make_result()
+    wrong_type.rays = wrong_type.rays + 0.5
+    wrong_component = make_result()
+    wrong_component.components["reflection/diffuse"] = wrong_component.components.pop("transmission")
+    wrong_order = make_result(orders=2)
+    orders = wrong_order.components["transmission"].orders
+    orders["second"] = orders.pop("order_2")
+    wrong_status = make_result(status="done")
+    no_time = make_result()
+    del no_time.provenance["created_utc"]
+    clash = make_result()
+    clash.provenance["seed"] = "1"
+    for result, message in [
+        (wrong_shape, "cells/valid has shape"),
+        (wrong_type, "Cannot cast"),
+        (wrong_component, "no component reflection/diffuse"),
+        (wrong_order, "no dataset transmission/second/energy"),
+        (wrong_status, "status is 'done'"),
+        (no_time, "lacks .'created_utc'"),
+        (clash, "reserved names .'seed'"),
+    ]:
+        with pytest.raises((ValueError, TypeError, KeyError), match=message):
+            encode(result)
+
+
+@pytest.mark.parametrize("parametrization", ["classic", "half"])
+@pytest.mark.parametrize("orders", [0, 2])
+def test_predicted_size(parametrization, orders):
+    """An upper estimate, and not more than 25 % above the size when nearly every cell is hit.
+
+    The numbers are Monte Carlo-like noise. Solid angles that vary from cell to cell stand for
+    those of half slices.
+    """
+    components = ("reflection/direct", "reflection/internal")
+    result = make_result([30.0], rows=90, columns=360, rays=10_000_000, parametrization=parametrization,
+                         orders=orders, components=components)
+    if parametrization == "half":
+        varied = np.random.default_rng(1).uniform(1, 2, (2, *result.cells.valid.shape))
+        result.cells.solid_angle, result.cells.projected_solid_angle = varied
+    groups = sum(len(component.orders) for component in result.components.values())
+    assert groups == orders
+    predicted = predicted_size(1, 3, 90, 360, len(components), groups, parametrization)
+    size = sum(map(len, encode(result)))
+    assert size <= predicted <= 1.25 * size
+
+
+def test_every_dataset_is_protected(tmp_path):
+    """Chunked with checksum, shuffle and compression, whatever the dataset."""
+    write_result(make_result(orders=2), tmp_path / "result.h5")
+    unprotected = []
+
+    def look(path, node):
+        if isinstance(node, h5py.Dataset):
+            filters = (node.fletcher32, node.shuffle, node.compression)
+            if filters != (True, True, "gzip"):
+                unprotected.append(path)
+
+    with h5py.File(tmp_path / "result.h5") as file:
+        file.visititems(look)
+        assert file["reflection/internal/energy"].chunks == (1, 1, 6, 8)
+    assert unprotected == []
+
+
+def test_other_programs_notice_damage_too(tmp_path):
+    """The checksum of HDF5 itself, without the digest of the whole file."""
+    write_result(make_result(), tmp_path / "result.h5")
+    content = bytearray((tmp_path / "result.h5").read_bytes())
+    with h5py.File(tmp_path / "result.h5") as file:
+        chunk = file["transmission/bsdf"].id.get_chunk_info(0)
+        start = chunk.byte_offset + file.userblock_size
+    content[start + chunk.size // 2] ^= 4
+    (tmp_path / "result.h5").write_bytes(content)
+    with h5py.File(tmp_path / "result.h5") as file:
+        assert np.isfinite(file["transmission/bsdf"][1]).all()
+        with pytest.raises(OSError, match="filter returned failure"):
+            file["transmission/bsdf"][0]

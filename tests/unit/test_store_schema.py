@@ -1,0 +1,176 @@
+"""`data_schema.md`, the table in the code and a written file say the same."""
+
+import hashlib
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+from synthetic import make_result
+
+from goniosim.result import AUDIT_ENTRIES
+from goniosim.store import layout, userblock, write_result
+
+DOCUMENT = (Path(__file__).parents[2] / "data_schema.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    """A file with everything in it that a file can have."""
+    path = tmp_path_factory.mktemp("schema") / "result.h5"
+    write_result(make_result(orders=3), path)
+    return path
+
+
+def rows(columns):
+    """Rows of the document's tables with that number of columns, without heads and rules."""
+    lines = [line.strip("| ") for line in DOCUMENT.splitlines() if line.startswith("| `")]
+    found = [re.split(r" +\| +", line) for line in lines]
+    return [row for row in found if len(row) == columns]
+
+
+def walk(group, prefix=""):
+    """All paths of a file, each link by itself, with what they lead to."""
+    for name, node in group.items():
+        yield prefix + name, node
+        if isinstance(node, h5py.Group):
+            yield from walk(node, f"{prefix}{name}/")
+
+
+def test_the_document_lists_the_datasets_of_the_code():
+    documented = [tuple(row) for row in rows(5)]
+    expected = [
+        (
+            f"`{dataset.path}`",
+            f"[{', '.join(layout.SIZES[dim] for dim in dataset.dims)}]",
+            dataset.dtype,
+            dataset.unit,
+            dataset.meaning,
+        )
+        for dataset in layout.DATASETS
+    ]
+    assert documented == expected
+
+
+def test_the_document_lists_the_attributes_of_the_code():
+    documented = [tuple(row) for row in rows(4)]
+    assert documented == [(f"`{a.group}`", f"`{a.name}`", a.dtype, a.meaning) for a in layout.ATTRIBUTES]
+
+
+def test_the_document_names_the_version():
+    assert DOCUMENT.startswith(f"# The result file, schema {layout.SCHEMA_VERSION}\n")
+    assert DOCUMENT.splitlines()[-1].startswith(f"| {layout.SCHEMA_VERSION} | ")
+    assert f"{userblock.MAGIC.decode()}{layout.SCHEMA_VERSION}\n" in DOCUMENT
+
+
+def test_every_dataset_of_a_file_is_described_and_the_reverse(path):
+    lengths = {"M": 2, "C": 3, "R": 6, "K": 8, "P": 3, "R + 1": 7, "K + 1": 9}
+    seen = set()
+    with h5py.File(path) as file:
+        for name, node in walk(file):
+            if isinstance(node, h5py.Group):
+                continue
+            last = name.split("/")[-1]
+            if last in ("direction", "channel", "row", "column") and "/" in name:
+                assert node == file[last], name
+                continue
+            if last in ("theta_deg", "phi_deg") and not name.startswith("incident/"):
+                assert node == file[f"incident/{last}"], name
+                continue
+            described = layout.describe(name)
+            seen.add(described.path)
+            assert node.shape == tuple(lengths[layout.SIZES[dim]] for dim in described.dims), name
+            stored = {"bool": "int8", "text": node.dtype}.get(described.dtype, described.dtype)
+            assert node.dtype == stored and (described.dtype == "text") == (node.dtype.kind == "S"), name
+            assert node.attrs["units"].decode() == described.unit
+            assert node.attrs["long_name"].decode() == described.meaning
+            if not described.is_scale:
+                scales = [dimension[0] for dimension in node.dims]
+                assert scales == [file[layout.SCALES[dim]] for dim in described.dims], name
+    assert seen == {dataset.path for dataset in layout.DATASETS}
+
+
+def test_every_attribute_of_a_file_is_described_and_the_reverse(path):
+    described = {(a.group, a.name) for a in layout.ATTRIBUTES}
+    seen = set()
+    with h5py.File(path) as file:
+        for group, node in [("", file), *walk(file)]:
+            if isinstance(node, h5py.Dataset):
+                continue
+            if re.fullmatch(r"(reflection/(direct|internal)|transmission)(/order_\w+)?", group):
+                group = "COMPONENT"
+            for name, value in node.attrs.items():
+                name = "EFFECT" if group == "effects" else name
+                name = "PROVENANCE" if group == "" and name in ("processor", "threads") else name
+                seen.add((group or "/", name))
+                assert isinstance(value, bytes | np.int8 | np.uint64), name
+    assert seen == described
+
+
+def test_each_dataset_finds_its_row():
+    assert layout.describe("audit/lost_roulette").path == "audit/lost_roulette"
+    for entry in AUDIT_ENTRIES:
+        assert layout.describe(f"audit/{entry}_stderr").path == "audit/ENTRY_stderr"
+    for unknown in (
+        "energy",
+        "reflection/energy",
+        "reflection/internal/order_2/order_3/energy",
+        "transmission/order_x/energy",
+        "audit/ENTRY_stderr",
+        "cost/error_reflection_direct2",
+    ):
+        with pytest.raises(KeyError, match="no dataset"):
+            layout.describe(unknown)
+
+
+EXAMPLES = re.findall(r"```python\n(.*?)```", DOCUMENT, re.DOTALL)
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=["goniosim", "h5py", "xarray"])
+def test_the_examples_run(example, path, monkeypatch, capsys):
+    monkeypatch.chdir(path.parent)
+    exec(compile(example, "data_schema.md", "exec"), {})
+    assert capsys.readouterr().out
+
+
+def test_the_digest_is_what_the_document_says(path):
+    content = path.read_bytes()
+    text = content[: userblock.SIZE].decode()
+    assert f"\nsha256: {hashlib.sha256(content[512:]).hexdigest()}\n" in text
+    assert f"\nbytes: {len(content) - 512}\n" in text
+    for line in text.splitlines()[:2]:
+        assert f"\n    {line}\n" in DOCUMENT
+
+
+@pytest.mark.parametrize("group", [*layout.COMPONENTS, "reflection/internal/order_2"])
+def test_xarray_opens_a_component(path, group):
+    """Named axes, with coordinates, and the numbers of the result."""
+    component = make_result(orders=3).components[group.partition("/order")[0]]
+    component = component.orders["order_2"] if "order" in group else component
+    with xr.open_dataset(path, group=group, engine="h5netcdf") as slices:
+        assert slices.bsdf.dims == ("direction", "channel", "row", "column")
+        np.testing.assert_array_equal(slices.bsdf.values, component.bsdf)
+        np.testing.assert_array_equal(slices.stderr.values, component.stderr)
+        assert list(slices.channel.values) == ["red", "green", "blue"]
+        np.testing.assert_allclose(slices.row.values, 7.5 + 15 * np.arange(6), rtol=1e-15)
+        np.testing.assert_allclose(slices.column.values, 22.5 + 45 * np.arange(8), rtol=1e-15)
+        assert list(slices.theta_deg.values) == [0, 60] and list(slices.phi_deg.values) == [0, 0]
+        assert set(slices.coords) == {"direction", "channel", "row", "column", "theta_deg", "phi_deg"}
+        assert slices.row.attrs["units"] == "degree"
+        assert slices.bsdf.attrs["long_name"] == "BSDF averaged over the cell"
+        assert slices.attrs["contains_delta"] == component.contains_delta
+
+
+def test_xarray_opens_the_rest(path):
+    result = make_result(orders=3)
+    with xr.open_datatree(path, engine="h5netcdf") as tree:
+        assert tree["cells/valid"].dtype == bool
+        assert tree["cells/valid"].dims == ("direction", "row", "column")
+        assert tree["audit/absorbed_base"].dims == ("direction", "channel")
+        absorbed = result.audit.energy["absorbed_base"]
+        np.testing.assert_array_equal(tree["audit/absorbed_base"].values, absorbed)
+        np.testing.assert_array_equal(tree["cost/seconds"].sel(rays=50_000).values, result.cost.seconds[1])
+        assert tree.attrs["config_yaml"] == result.config_yaml
+        assert tree["effects"].attrs["absorption"] == 1
