@@ -1,0 +1,68 @@
+"""goniosim, a virtual goniometer: Monte Carlo BRDF and BTDF slices of layered materials.
+
+>>> import goniosim
+>>> result = goniosim.simulate("configs/quickstart.yaml")            # doctest: +SKIP
+>>> result.components["reflection/internal"].bsdf.shape              # doctest: +SKIP
+(7, 3, 90, 360)
+
+Importing the package loads nothing heavy: each name brings its own machinery when first used.
+"""
+
+from importlib import import_module as _import_module
+
+__all__ = ["__version__", "load_scene", "open_result", "simulate"]
+
+_HOMES = {
+    "load_scene": "goniosim.scene",
+    "open_result": "goniosim.store",
+}
+
+
+def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):
+    """Simulate the goniometer measurement of one material.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene or path
+        What to simulate; a path is read with `load_scene`.
+    rays : int, optional
+        Rays per incident direction, instead of the scene's.
+    seed : int, optional
+        Seed of the random numbers, instead of the scene's.
+    threads : int, optional
+        Threads to use, instead of the scene's (or of all processors).
+    progress : callable, optional
+        Called as ``progress(done_rays, total_rays)`` a few times a second.
+    stop : threading.Event, optional
+        Once set, tracing ends within about a second.
+
+    Returns
+    -------
+    goniosim.result.Result
+        With status ``partial`` if ``stop`` ended it early.
+
+    Raises
+    ------
+    goniosim.errors.ConfigError
+        The scene file, or one of the other arguments, is wrong.
+    """
+    from goniosim import engine, scene as scenes
+
+    if not isinstance(scene, scenes.Scene):
+        scene = scenes.load_scene(scene)
+    return engine.simulate(scene, rays=rays, seed=seed, threads=threads, progress=progress, stop=stop)
+
+
+def __getattr__(name):
+    if name in _HOMES:
+        value = getattr(_import_module(_HOMES[name]), name)
+    elif name == "__version__":
+        value = _import_module("importlib.metadata").version("goniosim")
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__():
+    return sorted(__all__)

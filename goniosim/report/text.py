@@ -1,0 +1,132 @@
+"""Numbers and tables as plain text."""
+
+import math
+
+import numpy as np
+
+
+def with_error(value, stderr, decimals=5):
+    """Format a value with its standard error, as in ``0.04321 ± 0.00002``.
+
+    Parameters
+    ----------
+    value, stderr : float
+    decimals : int
+        Decimals of a value whose standard error is zero (known without noise) or more than
+        three places further down.
+
+    Returns
+    -------
+    str
+        The error has one significant digit, two when the first of them is a 1 (one digit
+        alone would there be wrong by up to a half). A plain number when there is no error.
+    """
+    if stderr < 10.0 ** -(decimals + 3):
+        return f"{value:.{decimals}f}"
+    exponent = math.floor(math.log10(stderr))
+    if stderr / 10.0**exponent < 1.95:
+        exponent -= 1
+    shown = max(-exponent, 0)
+    return f"{value:.{shown}f} ± {stderr:.{shown}f}"
+
+
+def count(number):
+    """Format a number of rays: ``16000000`` as ``1.6e7``, ``1234567`` as ``1.235e6``."""
+    number = float(number)
+    if number < 1e4:
+        return f"{number:.0f}"
+    mantissa, exponent = f"{number:.3e}".split("e")
+    mantissa = mantissa.rstrip("0").rstrip(".")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def rate(per_second):
+    """Format a rate of rays: ``11.8 M rays/s``."""
+    for unit, scale in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
+        if per_second >= scale:
+            return f"{per_second / scale:.3g} {unit} rays/s"
+    return f"{per_second:.3g} rays/s"
+
+
+def duration(seconds):
+    """Format a time span with its two largest units: ``0.4 s``, ``3 min 20 s``, ``2 h 5 min``."""
+    if seconds < 10.0:
+        return f"{seconds:.2g} s"
+    parts, rest = [], round(seconds)
+    for unit, length in (("d", 86400), ("h", 3600), ("min", 60), ("s", 1)):
+        amount, rest = divmod(rest, length)
+        if amount or parts:
+            parts.append((amount, unit))
+    return " ".join(f"{amount} {unit}" for amount, unit in parts[:2] if amount)
+
+
+def size(n_bytes):
+    """Format a file size: ``12.3 MB`` (decimal units)."""
+    for unit, scale in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if n_bytes >= scale:
+            return f"{n_bytes / scale:.3g} {unit}"
+    return f"{n_bytes} bytes"
+
+
+def degrees(angle):
+    """Format an angle in degrees without useless decimals: ``45``, ``89.99``."""
+    return f"{angle:.10g}"
+
+
+def table(header, rows, indent="  ", gap="   "):
+    """Lay out rows of strings in columns.
+
+    Parameters
+    ----------
+    header : sequence of str
+        A line break in it makes a header of two lines.
+    rows : sequence of sequences of str
+    indent, gap : str
+        What stands before the first column and between two columns.
+
+    Returns
+    -------
+    list of str
+        The header, then one line for each row; columns are aligned to the right, a first column
+        of words to the left.
+    """
+    height = max(name.count("\n") for name in header)
+    tops = [("\n" * (height - name.count("\n")) + name).split("\n") for name in header]
+    cells = [*map(list, zip(*tops)), *(list(row) for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*cells)]
+    words_first = any(row[0] and not row[0][0].isdigit() for row in rows)
+    lines = []
+    for row in cells:
+        aligned = [
+            text.ljust(width) if words_first and column == 0 else text.rjust(width)
+            for column, (text, width) in enumerate(zip(row, widths))
+        ]
+        lines.append((indent + gap.join(aligned)).rstrip())
+    return lines
+
+
+def channel_groups(names, arrays):
+    """Group the channels that agree in all the numbers to be shown.
+
+    Parameters
+    ----------
+    names : list of str
+        Names of the C channels.
+    arrays : iterable of ndarray, shape (M, C)
+
+    Returns
+    -------
+    list of (str, int)
+        The joined name of each group, ``RGB`` or ``red+green``, and its first channel.
+    """
+    arrays = list(arrays)
+    groups = []
+    for c in range(len(names)):
+        for members in groups:
+            if all(np.array_equal(a[:, c], a[:, members[0]]) for a in arrays):
+                members.append(c)
+                break
+        else:
+            groups.append([c])
+    separator = "" if all(len(name) == 1 for name in names) else "+"
+    return [(separator.join(names[c] for c in members), members[0]) for members in groups]
