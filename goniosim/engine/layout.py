@@ -6,6 +6,9 @@ weight per distinct channel, and, if orders are asked for, the number of events 
 interface so far.
 """
 
+# The two ways out of the stack.
+UP, DOWN = 0, 1
+
 # Fields of a batch.
 X, Y, Z, WEIGHT = 0, 1, 2, 3
 

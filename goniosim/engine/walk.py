@@ -12,6 +12,7 @@ from ..optics.random import derive_key
 from . import tally
 from .layout import (
     BOOST,
+    DOWN,
     EVENTS,
     GAIN,
     LEFT,
@@ -22,6 +23,7 @@ from .layout import (
     STAGES,
     TRANSMITTED,
     TRANSMITTED_OUT,
+    UP,
     WEIGHT,
     X,
     Z,
@@ -79,8 +81,8 @@ def walk(stack, light, unit_key, budget, state, filled, queues, work, scratch, p
             q = 0
             gambled = False
         elif filled[q] == 0:
-            _leave(0, exits, n_exits, cells, 1)
-            _leave(1, exits, n_exits, cells, 1)
+            _leave(UP, exits, n_exits, cells, 1)
+            _leave(DOWN, exits, n_exits, cells, 1)
             return True
         else:
             if state[LEFT] == 0:
@@ -116,15 +118,15 @@ def walk(stack, light, unit_key, budget, state, filled, queues, work, scratch, p
                 if side == ABOVE:
                     _book_direct(work, places[0], count, ledger)
                 else:
-                    _gather(work, n, places[through], count, exits[0], n_exits[0], X)
-                    _book(exits[0], n_exits[0], count, ledger, REFLECTED_INTERNAL)
-                    n_exits[0] += count
-                    _leave(0, exits, n_exits, cells, batch_size)
+                    _gather(work, n, places[through], count, exits[UP], n_exits[UP], X)
+                    _book(exits[UP], n_exits[UP], count, ledger, REFLECTED_INTERNAL)
+                    n_exits[UP] += count
+                    _leave(UP, exits, n_exits, cells, batch_size)
             elif not up and k == n_interfaces - 1:
-                _gather(work, n, places[through], count, exits[1], n_exits[1], X)
-                _book(exits[1], n_exits[1], count, ledger, TRANSMITTED_OUT)
-                n_exits[1] += count
-                _leave(1, exits, n_exits, cells, batch_size)
+                _gather(work, n, places[through], count, exits[DOWN], n_exits[DOWN], X)
+                _book(exits[DOWN], n_exits[DOWN], count, ledger, TRANSMITTED_OUT)
+                n_exits[DOWN] += count
+                _leave(DOWN, exits, n_exits, cells, batch_size)
             else:
                 target = 2 * (k - 1) + BELOW if up else 2 * (k + 1) + ABOVE
                 first = Z if forgets[target // 2] else X

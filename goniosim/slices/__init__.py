@@ -11,7 +11,12 @@ does not decide where the mirror direction of a whole number of degrees falls. T
 parametrization (theta_v = 0 or theta_h = 0) belongs to row 0 and column 0.
 """
 
-from .._jit import kernel
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._jit import kernel, scalar
 from . import classic, half
 
 CLASSIC, HALF = range(2)
@@ -25,3 +30,34 @@ def cells_of(parametrization, x, y, z, n, rows, columns, light, cell):
         classic.cells_of(x, y, z, n, rows, columns, cell)
     elif parametrization == HALF:
         half.cells_of(x, y, z, n, rows, columns, light, cell)
+
+
+@scalar
+def view_direction(parametrization, u, phi, lx, ly, lz):
+    """View direction of a point of the slice and d omega_v / (du dphi); see the parametrizations."""
+    if parametrization == CLASSIC:
+        return classic.view_direction(u, phi, lx, ly, lz)
+    return half.view_direction(u, phi, lx, ly, lz)
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """The cells of one slice.
+
+    Attributes
+    ----------
+    valid : ndarray of bool, shape (rows, columns)
+        Cells wholly above the horizon.
+    solid_angle, projected_solid_angle : ndarray, shape (rows, columns)
+        Of the part above the horizon, in sr.
+    """
+
+    valid: np.ndarray
+    solid_angle: np.ndarray
+    projected_solid_angle: np.ndarray
+
+
+def slice_geometry(parametrization, rows, columns, theta_deg):
+    """Cells of the slice for light at ``theta_deg``; ``parametrization`` by name."""
+    module = PARAMETRIZATIONS[parametrization][1]
+    return Geometry(*module.geometry(rows, columns, math.radians(theta_deg)))

@@ -2,9 +2,11 @@
 
 import math
 
-from .._jit import kernel
+import numpy as np
+
+from .._jit import kernel, scalar
 from ..optics.elementary import arctan2_first_quadrant
-from .grid import cell_number
+from .grid import HALF_PI, cell_number
 
 
 @kernel
@@ -13,3 +15,43 @@ def cells_of(x, y, z, n, rows, columns, cell):
     for i in range(n):
         theta = arctan2_first_quadrant(math.sqrt(x[i] * x[i] + y[i] * y[i]), z[i])
         cell[i] = cell_number(theta, -x[i], -y[i], z[i], rows, columns)
+
+
+@scalar
+def view_direction(u, phi, lx, ly, lz):
+    """View direction (x, y, z) of row coordinate ``u``, and d omega_v / (du dphi)."""
+    sine = math.sin(u)
+    return sine * math.cos(phi), sine * math.sin(phi), math.cos(u), sine
+
+
+def mirror_coordinate(theta):
+    """Row coordinate of the mirror direction of the polar angle ``theta``, in radians."""
+    return theta
+
+
+def lobe_scale(alpha):
+    """Width in the row coordinate of the reflection of a GGX lobe of width ``alpha``."""
+    return alpha
+
+
+def geometry(rows, columns, theta):
+    """Validity and exact solid angles of all cells; ``theta`` does not matter here.
+
+    Returns
+    -------
+    valid : ndarray of bool, shape (rows, columns)
+    solid_angle, projected_solid_angle : ndarray, shape (rows, columns)
+        In sr.
+    """
+    edge = np.linspace(0.0, HALF_PI, rows + 1)
+    low, high = edge[:-1], edge[1:]
+    d_phi = 2.0 * math.pi / columns
+    # Products instead of differences of cosines and squared sines: no digits are lost.
+    solid = 2.0 * np.sin(0.5 * (low + high)) * np.sin(0.5 * (high - low)) * d_phi
+    projected = 0.5 * np.sin(low + high) * np.sin(high - low) * d_phi
+    shape = (rows, columns)
+    return (
+        np.ones(shape, dtype=bool),
+        np.broadcast_to(solid[:, None], shape).copy(),
+        np.broadcast_to(projected[:, None], shape).copy(),
+    )

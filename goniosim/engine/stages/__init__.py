@@ -1,14 +1,44 @@
 """What happens at an interface: one file per type, one straight-line loop each.
 
-Every type offers ``lower`` (scene object to a row of the interface table) and ``scatter``
-(a batch of rays meets the interface). A new type is one new file, a line in `LOWER` and a line
-in `scatter`.
+Every type offers ``lower`` (scene object to a row of the interface table; rough and smooth
+variants share one) and ``scatter`` (a batch of rays meets the interface). A new type is one new
+file, a line in `LOWER` and a line in `scatter`.
 """
 
 from ..._jit import kernel
-from . import rough_conductor, rough_dielectric, lambert, smooth_conductor, smooth_dielectric
+from . import lambert, rough_conductor, rough_dielectric, smooth_conductor, smooth_dielectric
 
 ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR, LAMBERT = range(5)
+OPAQUE = (ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR, LAMBERT)
+
+# Interface type in the scene: how to lower it, and its kinds when smooth and when rough.
+LOWER = {
+    "dielectric": (smooth_dielectric.lower, SMOOTH_DIELECTRIC, ROUGH_DIELECTRIC),
+    "conductor": (smooth_conductor.lower, SMOOTH_CONDUCTOR, ROUGH_CONDUCTOR),
+    "lambert": (lambert.lower, LAMBERT, LAMBERT),
+}
+
+
+def lower(interface, index_above):
+    """Row of the interface table for an interface of the scene.
+
+    Parameters
+    ----------
+    interface : goniosim.scene interface
+    index_above : float
+        Absolute refractive index of the medium above.
+
+    Returns
+    -------
+    kind : int
+    alpha, eta : float
+        GGX width; index below relative to above, 1 for an opaque interface.
+    spectral : list of sequences of float
+        Up to two rows of one number per channel of the scene.
+    """
+    row, smooth, rough = LOWER[interface.type]
+    alpha, eta, spectral = row(interface, index_above)
+    return (rough if alpha > 0.0 else smooth), alpha, eta, spectral
 
 
 @kernel

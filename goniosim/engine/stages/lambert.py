@@ -8,6 +8,11 @@ from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, X, Y, Z
 RHO = 0
 
 
+def lower(interface, index_above):
+    """Reflectance rho; see `goniosim.engine.stages.lower`."""
+    return 0.0, 1.0, [interface.rho_rgb]
+
+
 @kernel
 def scatter(batch, n, spectral, key, scratch, ledger):
     """Scatter ``n`` rays; ``spectral`` holds the reflectance rho of every channel."""

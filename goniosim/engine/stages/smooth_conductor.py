@@ -7,6 +7,13 @@ from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, Z
 ETA, KAPPA = 0, 1
 
 
+def lower(interface, index_above):
+    """Width, and relative eta and kappa; see `goniosim.engine.stages.lower`."""
+    eta = [value / index_above for value in interface.eta_rgb]
+    kappa = [value / index_above for value in interface.kappa_rgb]
+    return interface.alpha, 1.0, [eta, kappa]
+
+
 @kernel
 def scatter(batch, n, spectral, scratch, ledger):
     """Scatter ``n`` rays; ``spectral`` holds the relative eta and kappa of every channel."""

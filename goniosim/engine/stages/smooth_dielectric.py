@@ -9,6 +9,11 @@ from ..layout import GAIN, TRANSMITTED, X, Y, Z
 COIN = 2
 
 
+def lower(interface, index_above):
+    """Width, relative index; see `goniosim.engine.stages.lower`."""
+    return interface.alpha, interface.eta / index_above, []
+
+
 @kernel
 def scatter(batch, n, eta, key, scratch):
     """Scatter ``n`` rays; ``eta`` is the index of the far side relative to the side of arrival."""

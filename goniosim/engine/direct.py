@@ -1,0 +1,158 @@
+"""The direct reflection off the top interface, integrated over every cell instead of sampled.
+
+The energy of a cell is the integral over it of F D G1(l) G1(v) / (4 l_z). Each cell is cut in two
+or four until the sum of the Gauss-Legendre rules of the parts agrees with that of the whole; around
+the mirror direction it is first cut down to the width of the lobe, which may be a thousand times
+narrower than a cell and would otherwise be missed.
+"""
+
+import math
+
+import numpy as np
+
+from .._jit import kernel
+from ..optics.elementary import TWO_PI
+from ..optics.fresnel import fresnel_conductor, fresnel_dielectric
+from ..optics.microfacet import microfacet_reflection
+from ..slices import PARAMETRIZATIONS, cells_of, view_direction
+from ..slices.grid import HALF_PI
+from .stages import LAMBERT, ROUGH_CONDUCTOR, ROUGH_DIELECTRIC, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
+
+RELATIVE_TOLERANCE = 1e-8
+ABSOLUTE_TOLERANCE = 1e-14
+MAX_DEPTH = 40
+
+_x, _w = np.polynomial.legendre.leggauss(5)
+_NODES = 0.5 * (1.0 + _x)
+_WEIGHTS = 0.5 * _w
+
+
+def direct_reflection(plan, direction):
+    """Energy that leaves into every cell after a single event on the top interface.
+
+    Parameters
+    ----------
+    plan : goniosim.engine.plan.Plan
+    direction : int
+        Index of the incident direction.
+
+    Returns
+    -------
+    energy, error : ndarray, shape (distinct channels, rows, columns)
+        Fraction of the incident flux, and an estimate of the error of its integration.
+    """
+    kind, alpha, eta = int(plan.kinds[0]), float(plan.alphas[0]), float(plan.etas[0])
+    spectral = plan.spectral[0]
+    light = plan.light[direction]
+    shape = (plan.n_distinct, plan.rows, plan.columns)
+    if kind == LAMBERT:
+        cosines = plan.geometry[direction].projected_solid_angle
+        return spectral[0][:, None, None] * cosines / math.pi, np.zeros(shape)
+    if kind in (SMOOTH_DIELECTRIC, SMOOTH_CONDUCTOR):
+        energy = np.zeros(shape)
+        for c in range(plan.n_distinct):
+            energy[c].flat[mirror_cell(plan, direction)] = _fresnel(kind, eta, spectral[:, c], light[2])
+        return energy, np.zeros(shape)
+    module = PARAMETRIZATIONS[plan.parametrization_name][1]
+    peak = module.mirror_coordinate(math.acos(min(1.0, light[2])))
+    scale = 0.25 * module.lobe_scale(alpha)
+    energy = np.zeros(shape)
+    error = np.zeros(shape)
+    # The index of a dielectric is the same in all channels.
+    computed = plan.n_distinct if kind == ROUGH_CONDUCTOR else 1
+    for c in range(computed):
+        _integrate_slice(
+            kind, alpha, eta, spectral[:, c], plan.parametrization, light, peak, scale, energy[c], error[c]
+        )
+    energy[computed:] = energy[0]
+    error[computed:] = error[0]
+    return energy, error
+
+
+def mirror_cell(plan, direction):
+    """Number of the cell that holds the mirror direction, by the tie rule of `goniosim.slices`."""
+    light = plan.light[direction]
+    cell = np.empty(1, np.int32)
+    # The view vector minus its horizontal part: that of the mirror direction is the light itself.
+    x, y, z = light[:, None].copy()
+    cells_of(plan.parametrization, x, y, z, 1, plan.rows, plan.columns, light, cell)
+    return int(cell[0])
+
+
+@kernel
+def _fresnel(kind, eta, spectral, cosine):
+    if kind == ROUGH_DIELECTRIC or kind == SMOOTH_DIELECTRIC:
+        reflectance, _ = fresnel_dielectric(cosine, eta)
+        return reflectance
+    return fresnel_conductor(cosine, spectral[0], spectral[1])
+
+
+@kernel
+def _integrate_slice(kind, alpha, eta, spectral, parametrization, light, peak, scale, energy, error):
+    rows, columns = energy.shape
+    d_u = HALF_PI / rows
+    d_phi = TWO_PI / columns
+    todo = np.empty((4 * MAX_DEPTH + 4, 6))
+    for row in range(rows):
+        # Light stands at azimuth 0: the slice is its own mirror image.
+        for column in range((columns + 1) // 2):
+            value, accuracy = _integrate_cell(
+                kind, alpha, eta, spectral, parametrization, light, peak, scale, row * d_u, column * d_phi, d_u, d_phi, todo
+            )
+            for j in (column, columns - 1 - column):
+                energy[row, j] = value
+                error[row, j] = accuracy
+
+
+@kernel
+def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, scale, u, phi, d_u, d_phi, todo):
+    """Integral and error estimate over one cell; ``todo`` is a stack of (u, phi, widths, rule, depth)."""
+    whole = _rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi)
+    todo[0] = (u, phi, d_u, d_phi, whole, 0.0)
+    n = 1
+    total = 0.0
+    error = 0.0
+    while n > 0:
+        n -= 1
+        u, phi, d_u, d_phi, whole, depth = todo[n]
+        half_u = 0.5 * d_u
+        # Next to the pole of the slice a cell is a thin wedge: halve its length only.
+        slices_of_phi = 1 if (u + d_u) * d_phi < half_u else 2
+        part_phi = d_phi / slices_of_phi
+        parts = 0.0
+        for i in range(2):
+            for j in range(slices_of_phi):
+                part_u = u + i * half_u
+                start_phi = phi + j * part_phi
+                value = _rule(kind, alpha, eta, spectral, parametrization, light, part_u, start_phi, half_u, part_phi)
+                todo[n + slices_of_phi * i + j] = (part_u, start_phi, half_u, part_phi, value, depth + 1)
+                parts += value
+        difference = abs(parts - whole)
+        # At the pole the lobe lies at every azimuth.
+        near = (abs(u + half_u - peak) <= d_u) & ((abs(phi + 0.5 * d_phi - math.pi) <= d_phi) | (peak <= d_u))
+        holds_peak = near & (d_u > scale)
+        settled = difference <= RELATIVE_TOLERANCE * parts + ABSOLUTE_TOLERANCE
+        if (settled & (not holds_peak)) | (depth >= MAX_DEPTH):
+            total += parts
+            error += difference
+        else:
+            n += 2 * slices_of_phi
+    return total, error
+
+
+@kernel
+def _rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi):
+    """Gauss-Legendre rule on one rectangle of the slice."""
+    lx = light[0]
+    ly = light[1]
+    lz = light[2]
+    total = 0.0
+    for i in range(_NODES.shape[0]):
+        for j in range(_NODES.shape[0]):
+            vx, vy, vz, jacobian = view_direction(
+                parametrization, u + d_u * _NODES[i], phi + d_phi * _NODES[j], lx, ly, lz
+            )
+            lobe, cosine = microfacet_reflection(lx, ly, lz, vx, vy, vz, alpha)
+            value = lobe * _fresnel(kind, eta, spectral, cosine) * max(0.0, vz) * jacobian
+            total += _WEIGHTS[i] * _WEIGHTS[j] * value
+    return total * d_u * d_phi

@@ -1,0 +1,159 @@
+"""From tallies to numbers with error bars."""
+
+import numpy as np
+
+from ..result import AUDIT_ENTRIES, Audit, Cells, Component
+from .direct import direct_reflection
+from .layout import DOWN, UP
+from .stages import SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
+
+COMPONENT_OF = {UP: "reflection/internal", DOWN: "transmission"}
+
+
+def cells(plan):
+    """The `goniosim.result.Cells` of a plan."""
+    return Cells(
+        parametrization=plan.parametrization_name,
+        row_edges=np.linspace(0.0, 90.0, plan.rows + 1),
+        column_edges=np.linspace(0.0, 360.0, plan.columns + 1),
+        valid=np.stack([g.valid for g in plan.geometry]),
+        solid_angle=np.stack([g.solid_angle for g in plan.geometry]),
+        projected_solid_angle=np.stack([g.projected_solid_angle for g in plan.geometry]),
+    )
+
+
+def moments(histogram, plan, first, count):
+    """Sums over histograms ``first`` to ``first + count - 1``.
+
+    Returns
+    -------
+    total, squares : ndarray, shape (distinct channels, rows, columns)
+    hits : ndarray, shape (rows, columns)
+    """
+    d = plan.n_distinct
+    shape = (plan.n_slots, plan.rows, plan.columns, histogram.shape[1])
+    part = histogram.reshape(shape)[first : first + count].sum(axis=0)
+    return np.moveaxis(part[..., :d], -1, 0), np.moveaxis(part[..., d : 2 * d], -1, 0), part[..., 2 * d]
+
+
+def mean_and_error(total, squares, rays):
+    """Mean per ray, and its standard error from the scatter of the paths; 0 where there were no rays."""
+    n = max(rays, 2)
+    mean = total / n
+    return mean, np.sqrt(np.maximum(squares - total * mean, 0.0) / (n * (n - 1.0)))
+
+
+def to_bsdf(energy, geometry):
+    """Divide by the projected solid angle of the cells; 0 in cells that are not valid."""
+    valid = geometry.valid & (geometry.projected_solid_angle > 0.0)
+    return np.divide(energy, geometry.projected_solid_angle, out=np.zeros_like(energy), where=valid)
+
+
+def _assemble(plan, slices, hits, contains_delta):
+    """A `Component` from (energy, stderr) pairs per direction on the distinct channels."""
+    fields = {"energy": [], "stderr": [], "bsdf": [], "bsdf_stderr": []}
+    for (energy, stderr), geometry in zip(slices, plan.geometry, strict=True):
+        fields["energy"].append(energy[plan.position])
+        fields["stderr"].append(stderr[plan.position])
+        fields["bsdf"].append(to_bsdf(energy, geometry)[plan.position])
+        fields["bsdf_stderr"].append(to_bsdf(stderr, geometry)[plan.position])
+    return Component(
+        **{name: np.stack(arrays) for name, arrays in fields.items()},
+        hits=None if hits is None else np.stack(hits).astype(np.int64),
+        contains_delta=contains_delta,
+    )
+
+
+def _sampled(plan, tallies, rays, first, count, contains_delta):
+    slices, hits = [], []
+    for tally, n in zip(tallies, rays, strict=True):
+        total, squares, seen = moments(tally.histogram, plan, first, count)
+        slices.append(mean_and_error(total, squares, n))
+        hits.append(seen)
+    return _assemble(plan, slices, hits, contains_delta)
+
+
+def components(plan, tallies, rays, pool):
+    """All components of the result.
+
+    Parameters
+    ----------
+    plan : Plan
+    tallies : list of Tally
+        One for each direction.
+    rays : list of int
+        Rays traced from each direction.
+    pool : concurrent.futures.Executor
+        Runs the integration of the direct reflection, direction by direction.
+
+    Returns
+    -------
+    dict of str to goniosim.result.Component
+    """
+    direct = list(pool.map(lambda m: direct_reflection(plan, m), range(len(plan.theta_deg))))
+    is_delta = int(plan.kinds[0]) in (SMOOTH_DIELECTRIC, SMOOTH_CONDUCTOR)
+    found = {"reflection/direct": _assemble(plan, direct, None, is_delta)}
+    for side, name in COMPONENT_OF.items():
+        first, count, lowest = (int(value) for value in plan.slots[side])
+        if count == 0:
+            continue
+        delta = plan.has_specular_chain(side)
+        found[name] = _sampled(plan, tallies, rays, first, count, delta)
+        if plan.orders:
+            for i in range(count):
+                last = "_and_more" if i == count - 1 else ""
+                found[name].orders[f"order_{lowest + i}{last}"] = _sampled(plan, tallies, rays, first + i, 1, delta)
+    return found
+
+
+def noise(plan, tallies, rays, side):
+    """Noise floor of a component: see `goniosim.result.Cost.error`."""
+    first, count, _ = (int(value) for value in plan.slots[side])
+    # A channel that stands for several counts as often.
+    weights = np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
+    total = 0.0
+    for tally, n, geometry in zip(tallies, rays, plan.geometry, strict=True):
+        stderr = mean_and_error(*moments(tally.histogram, plan, first, count)[:2], n)[1]
+        variance = to_bsdf(stderr, geometry) ** 2 * geometry.projected_solid_angle
+        total += float(variance.sum(axis=(1, 2)) @ weights)
+    return float(np.sqrt(total / len(plan.theta_deg)))
+
+
+def audit(plan, ledgers, unit_rays, direct):
+    """Energy balance with standard errors from the scatter between work units.
+
+    Parameters
+    ----------
+    plan : Plan
+    ledgers : list of list of ndarray, shape (N_LEDGER, distinct channels)
+        Of every finished work unit of every direction.
+    unit_rays : list of list of int
+        Rays of those units.
+    direct : goniosim.result.Component
+        The integrated direct reflection.
+    """
+    mean = np.zeros((len(AUDIT_ENTRIES), len(ledgers), plan.n_distinct))
+    stderr = np.zeros_like(mean)
+    for m, (parts, sizes) in enumerate(zip(ledgers, unit_rays, strict=True)):
+        mean[:, m], stderr[:, m] = _balance(parts, sizes, plan.n_distinct)
+    return Audit(
+        energy={name: mean[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
+        stderr={name: stderr[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
+        direct_integrated=direct.energy.sum(axis=(2, 3)),
+        direct_integrated_stderr=direct.stderr.sum(axis=(2, 3)),
+    )
+
+
+def _balance(parts, sizes, n_distinct):
+    if not parts:
+        return np.zeros((len(AUDIT_ENTRIES), n_distinct)), np.zeros((len(AUDIT_ENTRIES), n_distinct))
+    sizes = np.array(sizes, dtype=float)[:, None, None]
+    parts = np.stack(parts)
+    rays = sizes.sum()
+    mean = parts.sum(axis=0) / rays
+    units = len(parts)
+    if units == 1:
+        # No scatter to look at: the largest error that energies between 0 and 1 can have.
+        return mean, np.sqrt(np.clip(mean * (1.0 - mean), 0.0, None) / rays)
+    deviations = ((parts - sizes * mean) ** 2).sum(axis=0)
+    return mean, np.sqrt(deviations * units / (units - 1.0)) / rays

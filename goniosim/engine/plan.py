@@ -1,0 +1,166 @@
+"""A scene lowered to the flat tables that the compiled engine reads: only what the scene calls for."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..scene import distinct_channels
+from ..slices import PARAMETRIZATIONS, slice_geometry
+from .layout import DOWN, UP
+from .stages import LAMBERT, OPAQUE, lower
+
+# The order (events on the top interface) with which a path can first leave upwards after having
+# entered the stack, and downwards.
+FIRST_ORDER = (2, 1)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to trace, and nothing that no layer or option asks for.
+
+    K interfaces, D distinct channels, M directions.
+
+    Attributes
+    ----------
+    kinds : ndarray of int64, shape (K,)
+        Interface types, see `stages`.
+    alphas, etas : ndarray, shape (K,)
+        GGX width, and index below relative to above (1 for opaque interfaces).
+    spectral : ndarray, shape (K, 2, D)
+        Relative eta and kappa of conductors, rho of Lambertian bases.
+    forgets : ndarray of bool, shape (K,)
+        Interfaces to which the azimuth of an arriving ray does not matter.
+    taus : ndarray, shape (max(K - 1, 1), D)
+        Optical depths between interfaces.
+    absorbs : ndarray of bool, shape (max(K - 1, 1),)
+    distinct : list of int
+        A representative channel for every distinct one.
+    position : list of int
+        Of every channel of the scene, its place among the distinct ones.
+    theta_deg : ndarray, shape (M,)
+    light : ndarray, shape (M, 3)
+        Unit vectors to the light.
+    orders : int
+        Orders to tell apart, 0 for none.
+    slots : ndarray of int64, shape (2, 3)
+        For exits upwards and downwards: first histogram, number of histograms, first order.
+    geometry : list of goniosim.slices.Geometry
+        One for each direction.
+    """
+
+    kinds: np.ndarray
+    alphas: np.ndarray
+    etas: np.ndarray
+    spectral: np.ndarray
+    forgets: np.ndarray
+    taus: np.ndarray
+    absorbs: np.ndarray
+    distinct: list
+    position: list
+    theta_deg: np.ndarray
+    light: np.ndarray
+    orders: int
+    slots: np.ndarray
+    parametrization_name: str
+    rows: int
+    columns: int
+    geometry: list
+
+    @property
+    def n_distinct(self):
+        return len(self.distinct)
+
+    @property
+    def n_slots(self):
+        return int(self.slots[:, 1].sum())
+
+    @property
+    def parametrization(self):
+        return PARAMETRIZATIONS[self.parametrization_name][0]
+
+    @property
+    def tables(self):
+        """The tuple of tables that `walk.walk` takes."""
+        return (
+            self.kinds,
+            self.alphas,
+            self.etas,
+            self.spectral,
+            self.forgets,
+            self.taus,
+            self.absorbs,
+            self.orders > 0,
+        )
+
+    def has_specular_chain(self, side):
+        """Whether light can leave upwards (inside the stack) or downwards by smooth interfaces alone."""
+        smooth = self.alphas == 0.0
+        smooth[self.kinds == LAMBERT] = False
+        if side == DOWN:
+            return bool(smooth.all())
+        return bool(len(smooth) > 1 and smooth[0] and smooth[1])
+
+
+def make_plan(scene):
+    """Lower a scene.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene
+
+    Returns
+    -------
+    Plan
+    """
+    distinct, position = distinct_channels(scene)
+    interfaces = scene.material.interfaces
+    k = len(interfaces)
+    kinds = np.zeros(k, np.int64)
+    alphas = np.zeros(k)
+    etas = np.ones(k)
+    spectral = np.zeros((k, 2, len(distinct)))
+    above = 1.0
+    for i, interface in enumerate(interfaces):
+        kinds[i], alphas[i], etas[i], rows = lower(interface, above)
+        for row, values in enumerate(rows):
+            spectral[i, row] = [values[c] for c in distinct]
+        above *= etas[i]
+    taus = np.zeros((max(k - 1, 1), len(distinct)))
+    for i, tau in enumerate(scene.material.tau):
+        taus[i] = [tau[c] for c in distinct]
+
+    orders = scene.simulation.orders or 0
+    rows, columns = scene.slice.rows, scene.slice.columns
+    theta_deg = np.array(scene.incident.theta_deg, dtype=float)
+    return Plan(
+        kinds=kinds,
+        alphas=alphas,
+        etas=etas,
+        spectral=spectral,
+        forgets=kinds == LAMBERT,
+        taus=taus,
+        absorbs=(taus > 0.0).any(axis=1),
+        distinct=distinct,
+        position=position,
+        theta_deg=theta_deg,
+        light=np.array([[math.sin(t), 0.0, math.cos(t)] for t in np.radians(theta_deg)]),
+        orders=orders,
+        slots=_slots(k, kinds[-1] not in OPAQUE, orders),
+        parametrization_name=scene.slice.parametrization,
+        rows=rows,
+        columns=columns,
+        geometry=[slice_geometry(scene.slice.parametrization, rows, columns, t) for t in theta_deg],
+    )
+
+
+def _slots(n_interfaces, transmits, orders):
+    """Histograms upwards: orders 2 to N, then all above; downwards: orders 1 to N, then all above."""
+    counts = [0, 0]
+    if n_interfaces > 1:
+        counts[UP] = max(orders, 1)
+    if transmits:
+        counts[DOWN] = orders + 1 if orders else 1
+    return np.array(
+        [[0, counts[UP], FIRST_ORDER[UP]], [counts[UP], counts[DOWN], FIRST_ORDER[DOWN]]], dtype=np.int64
+    )

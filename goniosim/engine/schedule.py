@@ -1,0 +1,42 @@
+"""Which work unit traces which rays: depends on the number of rays only, never on the threads."""
+
+from dataclasses import dataclass
+
+LARGEST_UNIT = 1 << 20
+# Enough independent units for a standard error by their scatter, and for all cores to be busy.
+FEWEST_UNITS = 16
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Work units of a simulation, ordered so that all directions advance together.
+
+    Parameters
+    ----------
+    directions : int
+    rays : int
+        Rays from each direction.
+    """
+
+    directions: int
+    rays: int
+
+    @property
+    def rounds(self):
+        """Work units per direction."""
+        return max(FEWEST_UNITS, -(-self.rays // LARGEST_UNIT))
+
+    def __len__(self):
+        return self.rounds * self.directions
+
+    def __getitem__(self, number):
+        """Direction, unit of that direction, and rays of the ``number``-th work unit."""
+        unit, direction = divmod(number, self.directions)
+        first = self.rays * unit // self.rounds
+        return direction, unit, self.rays * (unit + 1) // self.rounds - first
+
+    @property
+    def checkpoints(self):
+        """Rounds after which to note cost and error: 1, 2, 4, ... and the last."""
+        rounds = [1 << i for i in range(self.rounds.bit_length()) if 1 << i < self.rounds]
+        return [*rounds, self.rounds]

@@ -1,0 +1,251 @@
+"""The driver: work units on threads, their tallies summed in a fixed order, results assembled."""
+
+import os
+import platform
+import threading
+import time
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+import numpy as np
+
+from ..result import Cost, Result
+from ..scene import CHANNELS, effects, parse_scene
+from . import estimate
+from .layout import DOWN, UP
+from .plan import make_plan
+from .schedule import Schedule
+from .unit import Tally, Workspace, unit_key
+
+_POLL_SECONDS = 0.1
+
+
+def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):
+    """Shoot rays at a scene and return its slices with their error bars.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene
+    rays, seed, threads : int, optional
+        Override what the scene says. The result does not depend on ``threads``; the default
+        is every core this process may use.
+    progress : callable, optional
+        Called as ``progress(done_rays, total_rays)`` a few times a second, from this thread.
+    stop : threading.Event, optional
+        When set, tracing ends within a second; the result holds the finished work units and
+        has the status ``partial``.
+
+    Returns
+    -------
+    goniosim.result.Result
+
+    Raises
+    ------
+    goniosim.errors.ConfigError
+        If an override is out of range.
+    """
+    wanted = {"rays": rays, "seed": seed, "threads": threads}
+    overrides = [f"simulation.{key}={value}" for key, value in wanted.items() if value is not None]
+    if overrides:
+        scene = parse_scene(scene.to_yaml(), overrides=overrides)
+    threads = scene.simulation.threads or available_cores()
+    plan = make_plan(scene)
+    run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)
+    run.warm_up()
+    run.trace(progress or (lambda done, total: None), stop or threading.Event())
+    with ThreadPoolExecutor(threads) as pool:
+        found = estimate.components(plan, run.tallies, run.rays, pool)
+    return Result(
+        config_yaml=scene.to_yaml(),
+        name=scene.material.name,
+        status="complete" if run.finished else "partial",
+        seed=scene.simulation.seed,
+        theta_deg=plan.theta_deg,
+        phi_deg=np.zeros_like(plan.theta_deg),
+        rays=np.array(run.rays, dtype=np.int64),
+        channels=list(CHANNELS),
+        cells=estimate.cells(plan),
+        components=found,
+        audit=estimate.audit(plan, run.ledgers, run.unit_rays, found["reflection/direct"]),
+        cost=run.cost(),
+        effects={effect.name: effect.active for effect in effects(scene)},
+        provenance=_provenance(threads),
+    )
+
+
+def available_cores():
+    """Cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def warm_up(scene):
+    """Compile the kernels, or load them from the cache; returns the seconds it took."""
+    plan = make_plan(scene)
+    return _Run(plan, 1, 0, 1).warm_up()
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What a short trial run says about a scene.
+
+    Attributes
+    ----------
+    rays_per_second : float
+        Over all threads.
+    events_per_ray : float
+        Mean number of interfaces a ray meets.
+    compile_seconds : float
+        Time to compile the kernels or to load them from the cache.
+    """
+
+    rays_per_second: float
+    events_per_ray: float
+    compile_seconds: float
+
+
+def probe(scene, seconds=1.0, threads=None):
+    """Trace the scene for about ``seconds`` and measure; see `Probe`."""
+    plan = make_plan(scene)
+    threads = threads or scene.simulation.threads or available_cores()
+    compile_seconds = _Run(plan, 1, 0, 1).warm_up()
+    stop = threading.Event()
+    rays = 1 << 16
+    while True:
+        run = _Run(plan, rays, scene.simulation.seed, threads)
+        start = time.perf_counter()
+        run.trace(lambda done, total: None, stop)
+        elapsed = time.perf_counter() - start
+        if elapsed > 0.5 * seconds:
+            total = sum(run.rays)
+            return Probe(total / elapsed, run.events / total, compile_seconds)
+        rays = int(rays * min(16.0, max(2.0, 0.8 * seconds / elapsed)))
+
+
+@dataclass
+class _Run:
+    plan: object
+    rays_per_direction: int
+    seed: int
+    threads: int
+    tallies: list = field(init=False)
+    checkpoints: list = field(default_factory=list)
+    cpu_seconds: float = 0.0
+    seconds: float = 0.0
+    events: int = 0
+
+    def __post_init__(self):
+        directions = len(self.plan.theta_deg)
+        self.schedule = Schedule(directions, self.rays_per_direction)
+        self.tallies = [Tally(self.plan) for _ in range(directions)]
+        self.ledgers = [[] for _ in range(directions)]
+        self.unit_rays = [[] for _ in range(directions)]
+
+    @property
+    def rays(self):
+        return [sum(sizes) for sizes in self.unit_rays]
+
+    @property
+    def finished(self):
+        return all(len(parts) == self.schedule.rounds for parts in self.ledgers)
+
+    def warm_up(self):
+        start = time.perf_counter()
+        Workspace(self.plan).run(0, 1, unit_key(0, 0, 0), Tally(self.plan), threading.Event())
+        return time.perf_counter() - start
+
+    def trace(self, progress, stop):
+        """Run all work units, summing their tallies in the order of the schedule."""
+        start = time.perf_counter()
+        in_flight = self.threads + 2
+        spare = [Tally(self.plan) for _ in range(in_flight)]
+        local = threading.local()
+        pending = {}
+        done = {}
+        submitted = reduced = 0
+        total_rays = len(self.plan.theta_deg) * self.rays_per_direction
+        checkpoints = set(self.schedule.checkpoints)
+
+        def work(number, tally):
+            direction, unit, rays = self.schedule[number]
+            if stop.is_set():
+                return None
+            if not hasattr(local, "workspace"):
+                local.workspace = Workspace(self.plan)
+            key = unit_key(self.seed, direction, unit)
+            return local.workspace.run(direction, rays, key, tally, stop)
+
+        with ThreadPoolExecutor(self.threads) as pool:
+            try:
+                while reduced < len(self.schedule):
+                    while spare and submitted < len(self.schedule) and not stop.is_set():
+                        tally = spare.pop()
+                        pending[pool.submit(work, submitted, tally)] = (submitted, tally)
+                        submitted += 1
+                    if not pending:
+                        break
+                    finished, _ = wait(pending, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)
+                    for future in finished:
+                        number, tally = pending.pop(future)
+                        done[number] = (future.result(), tally)
+                    while reduced in done:
+                        report, tally = done.pop(reduced)
+                        self._reduce(reduced, report, tally)
+                        tally.clear()
+                        spare.append(tally)
+                        reduced += 1
+                        self.seconds = time.perf_counter() - start
+                        round_, rest = divmod(reduced, len(self.plan.theta_deg))
+                        if rest == 0 and round_ in checkpoints and not stop.is_set():
+                            self._checkpoint()
+                    progress(sum(self.rays), total_rays)
+            except BaseException:
+                stop.set()
+                raise
+        if not self.finished:
+            self._checkpoint()
+
+    def _reduce(self, number, report, tally):
+        direction, unit, _ = self.schedule[number]
+        # After a stop, units of a direction count only as far as none is missing before them.
+        if report is None or unit != len(self.ledgers[direction]):
+            return
+        self.tallies[direction].histogram += tally.histogram
+        self.ledgers[direction].append(tally.ledger.copy())
+        self.unit_rays[direction].append(report.rays)
+        self.cpu_seconds += report.cpu_seconds
+        self.events += report.events
+
+    def _checkpoint(self):
+        rays = self.rays
+        error = {
+            name: estimate.noise(self.plan, self.tallies, rays, side)
+            for side, name in estimate.COMPONENT_OF.items()
+            if self.plan.slots[side, 1] > 0
+        }
+        self.checkpoints.append((float(np.mean(rays)), self.seconds, self.cpu_seconds, error))
+
+    def cost(self):
+        names = [estimate.COMPONENT_OF[side] for side in (UP, DOWN) if self.plan.slots[side, 1] > 0]
+        rays, seconds, cpu_seconds, errors = zip(*self.checkpoints, strict=True)
+        return Cost(
+            rays=np.array(rays),
+            seconds=np.array(seconds),
+            cpu_seconds=np.array(cpu_seconds),
+            error={name: np.array([error[name] for error in errors]) for name in names},
+        )
+
+
+def _provenance(threads):
+    return {
+        "created_utc": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "goniosim_version": version("goniosim"),
+        "numba_version": version("numba"),
+        "numpy_version": version("numpy"),
+        "python_version": platform.python_version(),
+        "processor": platform.processor() or platform.machine(),
+        "threads": str(threads),
+    }
