@@ -1,0 +1,25 @@
+"""What the user describes: typed, checked, and read from YAML with the line of every mistake."""
+
+from goniosim.scene.effects import Effect, distinct_channels, effects
+from goniosim.scene.load import is_study, load_scene, load_scenes, parse_scene, study_name
+from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
+from goniosim.scene.quantity import CHANNELS
+from goniosim.scene.schema import json_schema
+
+__all__ = [
+    "CHANNELS",
+    "Effect",
+    "Incident",
+    "Material",
+    "Scene",
+    "Simulation",
+    "Slice",
+    "distinct_channels",
+    "effects",
+    "is_study",
+    "json_schema",
+    "load_scene",
+    "load_scenes",
+    "parse_scene",
+    "study_name",
+]

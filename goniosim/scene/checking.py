@@ -1,0 +1,117 @@
+"""From the raw tree to the scene: all mistakes at once, in the user's terms."""
+
+from typing import get_args
+
+from pydantic import ValidationError
+
+from goniosim.scene.layers import INTERFACES, Layer, Medium
+from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
+from goniosim.scene.problems import closest, listed
+from goniosim.scene.structure import structure_mistakes
+from goniosim.scene.tree import locate, plain
+
+MAPPINGS = {
+    "material": Material,
+    "incident": Incident,
+    "slice": Slice,
+    "simulation": Simulation,
+    "medium": Medium,
+    **INTERFACES,
+}
+CHOICES = {
+    "type": tuple(INTERFACES),
+    "parametrization": get_args(Slice.model_fields["parametrization"].annotation),
+    "estimator": get_args(Simulation.model_fields["estimator"].annotation),
+}
+_LAYER = list(Layer.model_fields)
+
+
+def check(node):
+    """Turn the raw content of a scene file into a scene.
+
+    Parameters
+    ----------
+    node : Node
+
+    Returns
+    -------
+    Scene or None, list of Problem
+        None exactly when there are problems.
+    """
+    problems = _structure_problems(node)
+    try:
+        scene = Scene.model_validate(plain(node))
+    except ValidationError as error:
+        problems += [_translate(node, detail) for detail in error.errors(include_url=False)]
+        return None, list(dict.fromkeys(problems))
+    return (None, problems) if problems else (scene, [])
+
+
+def _structure_problems(node):
+    # The models check the order of the layers too, but only once every single layer is sound.
+    layers, rest = locate(node, ("material", "layers"))
+    if rest or not isinstance(layers.value, list):
+        return []
+    kinds = [_kind(layer) for layer in layers.value]
+    return [_explain(locate(layers, location)[0], message) for location, message in structure_mistakes(kinds)]
+
+
+def _kind(layer):
+    interface = layer.child("interface")
+    if interface is not None:
+        kind = interface.child("type")
+        return kind.value if kind is not None and isinstance(kind.value, str) else None
+    return "medium" if layer.child("medium") is not None else None
+
+
+def _translate(root, detail):
+    """Word one of pydantic's errors as a Problem."""
+    # Pydantic puts the kind of an interface into the path, where the file has no key of that name.
+    location = detail["loc"]
+    steps = zip((None, *location), location, strict=False)
+    path = tuple(step for before, step in steps if not (before == "interface" and step in INTERFACES))
+    node, rest = locate(root, path)
+    kind = detail["type"]
+    if kind == "missing":
+        return node.problem("is missing: this key is required", got=False, below=rest)
+    if kind == "union_tag_not_found":
+        return node.problem(
+            f"is missing: give one of {listed(CHOICES['type'], 'or')}", got=False, below=("type",)
+        )
+    if kind == "extra_forbidden":
+        known = _known(location[:-1])
+        return node.problem(
+            f"unknown key; the keys here are {listed(known)}",
+            got=False,
+            suggestion=closest(location[-1], known),
+        )
+    if kind in ("literal_error", "union_tag_invalid"):
+        name = "type" if kind == "union_tag_invalid" else path[-1]
+        chosen = node.child("type") if kind == "union_tag_invalid" else node
+        return _wrong_choice(chosen, CHOICES[name])
+    if kind == "tuple_type":
+        return node.problem("must be a list: begin each entry with `- `")
+    if kind in ("model_type", "model_attributes_type"):
+        keys = _known(location)
+        return node.problem(f"must be a mapping with {listed(keys, 'or' if keys == _LAYER else 'and')}")
+    return _explain(node, detail["msg"])
+
+
+def _explain(node, message):
+    # A mistake in a mapping as a whole lies in the entries that its message names.
+    return node.problem(message, got=not isinstance(node.value, dict))
+
+
+def _known(location):
+    """Keys of the mapping at a location as pydantic gives it."""
+    if not location:
+        return list(Scene.model_fields)
+    if isinstance(location[-1], int):
+        return _LAYER
+    if location[-1] == "interface":
+        return ["type"]
+    return list(MAPPINGS[location[-1]].model_fields)
+
+
+def _wrong_choice(node, choices):
+    return node.problem(f"must be {listed(choices, 'or')}", suggestion=closest(node.value, choices))

@@ -1,0 +1,214 @@
+"""The scene: what a user describes, typed and checked."""
+
+import hashlib
+import io
+import json
+import re
+from typing import Annotated, Literal
+
+from pydantic import Field, field_validator, model_validator
+from ruamel.yaml import YAML
+
+from goniosim.scene.layers import Layer, Part
+from goniosim.scene.quantity import Checked, Number, check_each, mistake, mistakes
+from goniosim.scene.structure import structure_mistakes
+
+MAX_CELLS = 4_000_000
+MAX_DIRECTIONS = 1000
+
+Theta = Number(
+    0.0, 90.0, "be 0 or more and below 90: it is the angle from the normal in degrees", open_high=True
+)
+CellCount = Number(1, MAX_CELLS, "be a whole number from 1 to 4e6", integer=True)
+Rays = Number(100, 10**15, "be a whole number from 100 to 1e15, such as 1e7", integer=True)
+Seed = Number(0, 2**63 - 1, "be a whole number from 0 to 2^63 - 1", integer=True)
+Orders = Number(1, 16, "be a whole number from 1 to 16; leave it out for no decomposition", integer=True)
+Threads = Number(1, 4096, "be a whole number from 1 to 4096; leave it out to use every core", integer=True)
+
+
+class FileName(Checked):
+    """Annotation for a pydantic field: text that is safe as the stem of a file name."""
+
+    pattern = r"[A-Za-z0-9_+=-][A-Za-z0-9._+=-]{0,119}"
+    rule = "must be usable as a file name: 1 to 120 letters, digits or any of . _ + = - with no dot in front"
+
+    def check(self, value):
+        """Return the name, or raise the mistake in it."""
+        if not isinstance(value, str):
+            raise mistake(f"{self.rule}; write it between quotes if it looks like a number")
+        if not re.fullmatch(self.pattern, value):
+            raise mistake(self.rule)
+        return value
+
+    def json_schema(self):
+        """JSON Schema of such a name."""
+        return {"type": "string", "pattern": f"^{self.pattern}$"}
+
+
+class Angles(Checked):
+    """Annotation for a pydantic field: the distinct angles of incidence."""
+
+    def check(self, value):
+        """Return a tuple of angles in degrees, or raise the mistakes in it."""
+        if not isinstance(value, (list, tuple)):
+            raise mistake("must be a list of angles in degrees, such as [0, 30, 60]")
+        if not value:
+            raise mistake("must hold at least one angle, such as [45]")
+        if len(value) > MAX_DIRECTIONS:
+            raise mistake(f"must hold no more than {MAX_DIRECTIONS} angles: split it over several files")
+        angles = check_each(Theta, value)
+        again = [index for index, angle in enumerate(angles) if angle in angles[:index]]
+        if again:
+            message = "must differ from the angles before it: remove it"
+            raise mistakes([((index,), message, value[index]) for index in again])
+        return angles
+
+    def json_schema(self):
+        """JSON Schema of the list of angles."""
+        return {
+            "type": "array",
+            "items": Theta.json_schema(),
+            "minItems": 1,
+            "maxItems": MAX_DIRECTIONS,
+            "uniqueItems": True,
+        }
+
+
+class Material(Part):
+    """A stack of plane-parallel layers, with air above."""
+
+    name: Annotated[str, FileName()] = Field(description="Name of the material and of its result file.")
+    layers: tuple[Layer, ...] = Field(
+        description="Top to bottom, beginning at the top interface; air lies above.",
+        json_schema_extra={"minItems": 1},
+    )
+
+    @field_validator("layers", mode="after")
+    @classmethod
+    def _ordered(cls, layers):
+        kinds = ["medium" if layer.interface is None else layer.interface.type for layer in layers]
+        found = structure_mistakes(kinds)
+        if found:
+            raise mistakes([(location, message, None) for location, message in found])
+        return layers
+
+    @property
+    def interfaces(self):
+        """The interfaces from top to bottom, tuple of K interface models."""
+        return tuple(layer.interface for layer in self.layers if layer.interface is not None)
+
+    @property
+    def tau(self):
+        """Optical depth between each interface and the next, per channel.
+
+        Returns
+        -------
+        tuple of K - 1 tuples of 3 floats
+            Media in a row add up; zeros where two interfaces touch.
+        """
+        gaps = []
+        for layer in self.layers:
+            if layer.medium is None:
+                gaps.append((0.0, 0.0, 0.0))
+            else:
+                gaps[-1] = tuple(sum(pair) for pair in zip(gaps[-1], layer.medium.tau_rgb, strict=True))
+        return tuple(gaps[:-1])
+
+    @property
+    def transmits(self):
+        """Whether light can leave below: the last interface is a dielectric."""
+        return not self.interfaces[-1].opaque
+
+
+class Incident(Part):
+    """Where the light comes from."""
+
+    theta_deg: Annotated[tuple[float, ...], Angles()] = Field(
+        description="Angles of incidence from the normal, in degrees; the light stands at phi = 0."
+    )
+
+
+class Slice(Part):
+    """The cells into which the light that leaves is sorted."""
+
+    parametrization: Literal["classic", "half"] = Field(
+        default="classic",
+        description="classic: theta_v and phi_v; half: sqrt(theta_h pi/2) and phi_h, for sharp lobes.",
+    )
+    rows: Annotated[int, CellCount] = Field(default=90, description="Rows of cells over the elevation.")
+    columns: Annotated[int, CellCount] = Field(default=360, description="Columns of cells over the azimuth.")
+
+    @model_validator(mode="after")
+    def _bounded(self):
+        if self.rows * self.columns > MAX_CELLS:
+            raise mistake(
+                f"must have no more than 4e6 cells, and rows x columns is {self.rows * self.columns}: "
+                "use fewer of either"
+            )
+        return self
+
+
+class Simulation(Part):
+    """How much to trace, and how."""
+
+    rays: Annotated[int, Rays] = Field(default=10_000_000, description="Rays per incident direction.")
+    seed: Annotated[int, Seed] = Field(default=1, description="Seed of the random numbers.")
+    estimator: Literal["analog"] = Field(default="analog", description="Which Monte Carlo estimator to use.")
+    orders: Annotated[int | None, Orders] = Field(
+        default=None, description="Decompose by this many orders (events on the top interface)."
+    )
+    threads: Annotated[int | None, Threads] = Field(
+        default=None, description="Threads to use; without it, one for each core."
+    )
+
+
+class Scene(Part):
+    """One material and its measurement, complete."""
+
+    material: Material
+    incident: Incident
+    slice: Slice = Slice()
+    simulation: Simulation = Simulation()
+
+    def to_yaml(self):
+        """Write the scene as YAML, complete with its defaults.
+
+        Returns
+        -------
+        str
+            Text that loads back to an equal scene.
+        """
+        yaml = YAML(typ="safe", pure=True)
+        yaml.default_flow_style = None
+        yaml.sort_base_mapping_type_on_output = False
+        yaml.width = 100
+        stream = io.StringIO()
+        yaml.dump(self.model_dump(mode="json", exclude_none=True), stream)
+        return stream.getvalue()
+
+    def config_hash(self):
+        """Fingerprint of everything that determines the numbers of the result.
+
+        The name of the material and the number of threads do not, and neither
+        does the way of writing: a scalar for three equal channels, or media in
+        a row for their sum.
+
+        Returns
+        -------
+        str
+            SHA-256 of the canonical JSON, 64 hexadecimal digits.
+        """
+        content = {
+            "interfaces": [_expanded(interface) for interface in self.material.interfaces],
+            "tau": self.material.tau,
+            "incident": self.incident.model_dump(),
+            "slice": self.slice.model_dump(),
+            "simulation": self.simulation.model_dump(exclude={"threads"}),
+        }
+        text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _expanded(interface):
+    rgb_of = {name: getattr(interface, f"{name}_rgb", None) for name in type(interface).model_fields}
+    return {name: rgb_of[name] or value for name, value in interface.model_dump().items()}

@@ -1,0 +1,75 @@
+"""Changes to a scene file from the command line: ``--set path=value``."""
+
+from dataclasses import replace
+
+from goniosim.errors import ConfigError
+from goniosim.scene.problems import closest
+from goniosim.scene.reading import read_value
+from goniosim.scene.tree import Node, Origin, parse_path, show_path
+
+
+def override(root, assignments):
+    """Apply overrides to the raw content of a scene or study file.
+
+    Parameters
+    ----------
+    root : Node
+    assignments : iterable of str
+        Each ``path=value``; the value is YAML. Later ones win. A mapping that
+        is absent on the way is made, and a list keeps its length.
+
+    Returns
+    -------
+    Node
+
+    Raises
+    ------
+    ConfigError
+        Not of that form, or the path leads nowhere; names all that do.
+    """
+    problems = []
+    for assignment in assignments:
+        source = f"--set {assignment}"
+        path_text, equals, value_text = str(assignment).partition("=")
+        path = parse_path(path_text.strip())
+        if path is None or not equals:
+            problems.append(f"{source}: must be path=value, such as simulation.rays=1e6")
+            continue
+        origin = Origin(source, 0, path)
+        try:
+            value = read_value(value_text, origin) or Node(None, origin)
+            root = _set(root, (), path, value)
+        except ConfigError as error:
+            problems += error.problems
+    if problems:
+        raise ConfigError(problems)
+    return root
+
+
+def _set(node, done, rest, value):
+    """Return a copy of the node at path `done`, in which the entry at path `rest` below it is `value`."""
+    step, rest = rest[0], rest[1:]
+    here = (*done, step)
+    child = node.child(step)
+    if isinstance(step, int):
+        if not isinstance(node.value, list):
+            raise _nowhere(value, f"{show_path(done)} is no list")
+        if child is None:
+            raise _nowhere(value, f"{show_path(done)} has {len(node.value)} entries, counted from 0")
+    elif not isinstance(node.value, dict):
+        raise _nowhere(value, f"{show_path(done)} has no keys")
+    if not rest:
+        return node.with_child(step, value)
+    if child is None:
+        meant = closest(step, node.value)
+        if meant is not None:
+            raise _nowhere(value, f"there is no {show_path(here)}", show_path((*done, meant, *rest)))
+        if isinstance(rest[0], int):
+            raise _nowhere(value, f"there is no {show_path(here)}")
+        child = Node({}, replace(value.origin, path=here))
+    return node.with_child(step, _set(child, here, rest, value))
+
+
+def _nowhere(value, reason, meant=None):
+    suggestion = f" (did you mean {meant}?)" if meant else ""
+    return ConfigError(f"{value.origin.source}: leads nowhere: {reason}{suggestion}")

@@ -1,0 +1,197 @@
+"""From a YAML file to the raw tree, with the line of every value."""
+
+from pathlib import Path
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, SequenceNode
+
+from goniosim.errors import ConfigError
+from goniosim.scene.problems import Problem, config_error
+from goniosim.scene.tree import MAX_DEPTH, Node, Origin, show_path
+
+MAX_BYTES = 16_000_000
+MAX_VALUES = 200_000
+SCALARS = {"null", "bool", "int", "float", "str"}
+
+
+def read_file(path):
+    """Read a scene or study file.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    Node
+        A mapping.
+
+    Raises
+    ------
+    ConfigError
+        Unreadable, not UTF-8, not YAML, or not a mapping.
+    """
+    source = str(path)
+    try:
+        with Path(path).open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise ConfigError(f"{source}: there is no such file: check the path") from None
+    except IsADirectoryError:
+        raise ConfigError(f"{source}: is a folder: give the scene file in it") from None
+    except OSError as error:
+        raise ConfigError(f"{source}: cannot be read: {error.strerror}") from None
+    if len(content) > MAX_BYTES:
+        raise ConfigError(f"{source}: is larger than 16 MB: this is not a scene file")
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        byte = f"0x{content[error.start]:02x}"
+        raise ConfigError(f"{source}:{line}: is not UTF-8 text (byte {byte}): save it as UTF-8") from None
+    return read_text(text, source)
+
+
+def read_text(text, source):
+    """Read the text of a scene or study file.
+
+    Parameters
+    ----------
+    text : str
+    source : str
+        Name of the text in error messages.
+
+    Returns
+    -------
+    Node
+        A mapping.
+
+    Raises
+    ------
+    ConfigError
+        Not YAML, or not a mapping.
+    """
+    node = read_value(text, Origin(source, 1))
+    if node is None:
+        raise ConfigError(f"{source}:1: the file is empty: it needs material and incident")
+    if not isinstance(node.value, dict):
+        raise ConfigError(f"{source}:1: the file must be a mapping with material and incident")
+    return node
+
+
+def read_value(text, origin):
+    """Read any YAML value.
+
+    Parameters
+    ----------
+    text : str
+    origin : Origin
+        Of the first line; line 0 keeps all entries at line 0.
+
+    Returns
+    -------
+    Node or None
+        None for text without content.
+
+    Raises
+    ------
+    ConfigError
+        Not YAML; names the line.
+    """
+    yaml = YAML(typ="safe", pure=True)
+    yaml.composer.warn_double_anchors = False
+    try:
+        root = yaml.compose(text)
+        if root is None:
+            return None
+        reader = _Reader(yaml, origin.line > 0)
+        node = reader.node(root, origin)
+    except RecursionError:
+        raise ConfigError(
+            f"{_place(origin, 0)}: is nested too deeply, or holds too many values, for a scene file"
+        ) from None
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = mark.line if mark else 0
+        raise ConfigError(f"{_place(origin, line)}: YAML syntax: {_reason(error, text, line)}") from None
+    except YAMLError as error:
+        line = text.count("\n", 0, getattr(error, "position", 0))
+        reason = str(getattr(error, "reason", error))
+        raise ConfigError(f"{_place(origin, line)}: YAML syntax: {reason}") from None
+    if reader.problems:
+        raise config_error(reader.problems)
+    return node
+
+
+def _place(origin, line):
+    return f"{origin.source}:{origin.line + line}" if origin.line else origin.source
+
+
+def _reason(error, text, line):
+    parts = [part for part in (error.context, error.problem) if part]
+    # The context leads up to the problem only where the latter goes on with "but".
+    reason = ", ".join(parts) if parts[-1].startswith("but") else parts[-1]
+    if "\\t" in reason:
+        return f"{reason}: indent with spaces"
+    if "${" in "".join(text.splitlines()[line : line + 1]):
+        return f"{reason}: write ${{...}} between quotes"
+    return reason
+
+
+class _Reader:
+    """Turns composed YAML nodes into a tree and notes what YAML alone cannot forbid."""
+
+    def __init__(self, yaml, with_lines):
+        self.problems = []
+        self.values = 0
+        self._construct = yaml.constructor
+        self._with_lines = with_lines
+
+    def node(self, composed, origin):
+        # An alias repeats its anchor at every use, so the content may be far larger than the file,
+        # or endless.
+        self.values += 1
+        if len(origin.path) > MAX_DEPTH or self.values > MAX_VALUES:
+            raise RecursionError
+        if isinstance(composed, MappingNode):
+            return Node(self._mapping(composed, origin), origin)
+        if isinstance(composed, SequenceNode):
+            return Node([self._item(item, origin, i) for i, item in enumerate(composed.value)], origin)
+        return Node(self._scalar(composed, origin), origin)
+
+    def _mapping(self, composed, origin):
+        content = {}
+        for key_node, value_node in composed.value:
+            key = key_node.value
+            if not isinstance(key, str):
+                self._note(self._below(origin, "?", key_node), "a key must be a single word")
+                continue
+            below = self._below(origin, key, key_node)
+            if key in content:
+                first = content[key].origin.line
+                also = f" (the other is on line {first})" if first else ""
+                self._note(below, f"this key is there twice{also}: remove one")
+                continue
+            content[key] = self.node(value_node, below)
+        return content
+
+    def _item(self, composed, origin, index):
+        return self.node(composed, self._below(origin, index, composed))
+
+    def _scalar(self, composed, origin):
+        kind = composed.tag.rpartition(":")[2]
+        if kind not in SCALARS or kind == "str":
+            return composed.value
+        try:
+            return getattr(self._construct, f"construct_yaml_{kind}")(composed)
+        except (ValueError, KeyError):
+            self._note(origin, f"cannot be read as {kind}: check how it is written")
+            return None
+
+    def _below(self, origin, step, composed):
+        line = composed.start_mark.line + 1 if self._with_lines else 0
+        return Origin(origin.source, line, (*origin.path, step))
+
+    def _note(self, origin, message):
+        self.problems.append(Problem(origin.source, origin.line, show_path(origin.path), message))
