@@ -53,7 +53,10 @@ def _structure_problems(node):
     if rest or not isinstance(layers.value, list):
         return []
     kinds = [_kind(layer) for layer in layers.value]
-    return [_explain(locate(layers, location)[0], message) for location, message in structure_mistakes(kinds)]
+    return [
+        _explain(locate(layers, place)[0], ("layers", *place), message)
+        for place, message in structure_mistakes(kinds)
+    ]
 
 
 def _kind(layer):
@@ -94,12 +97,13 @@ def _translate(root, detail):
     if kind in ("model_type", "model_attributes_type"):
         keys = _known(location)
         return node.problem(f"must be a mapping with {listed(keys, 'or' if keys == _LAYER else 'and')}")
-    return _explain(node, detail["msg"])
+    return _explain(node, path, detail["msg"])
 
 
-def _explain(node, message):
-    # A mistake in a mapping as a whole lies in the entries that its message names.
-    return node.problem(message, got=not isinstance(node.value, dict))
+def _explain(node, path, message):
+    # Where a mapping belongs, a mistake in it as a whole lies in the entries that the message names.
+    whole = path[-1] in MAPPINGS or path[-2:-1] == ("layers",)
+    return node.problem(message, got=not whole)
 
 
 def _known(location):

@@ -88,24 +88,18 @@ class Number(Checked):
             raise mistake(f"must {self.rule}" if self.integer else f"must be a number, and {self.rule}")
         if not isinstance(value, Integral) and not math.isfinite(value):
             raise mistake(f"must be finite, and {self.rule}")
-        number = self._whole(value) if self.integer else self._real(value)
-        above = number >= self.high if self.open_high else number > self.high
-        if above or (number < self.low and not (self.zero_below and number == 0)):
+        above = value >= self.high if self.open_high else value > self.high
+        if above or (value < self.low and not (self.zero_below and value == 0)):
             raise mistake(f"must {self.rule}")
-        return number
-
-    def _real(self, value):
-        try:
-            return float(value) + 0.0  # -0.0 becomes 0.0: one value, one hash
-        except OverflowError:
-            raise mistake(f"must {self.rule}") from None
+        # Adding zero turns -0.0 into 0.0: one value, one hash.
+        return self._whole(value) if self.integer else float(value) + 0.0
 
     def _whole(self, value):
         if isinstance(value, Integral):
             return int(value)
         if value != math.floor(value):
             raise mistake(f"must {self.rule}")
-        if abs(value) > EXACT_INTEGERS:
+        if value > EXACT_INTEGERS:
             raise mistake(
                 "must be written with all its digits: a number this large is not exact with an exponent"
             )
