@@ -77,7 +77,7 @@ def walk(stack, light, unit_key, budget, state, filled, queues, work, scratch, p
         if filled[q] < batch_size and state[LEFT] > 0:
             n = min(batch_size, state[LEFT])
             state[LEFT] -= n
-            _launch(work, n, light)
+            _launch(work, n, light, channels)
             q = 0
             gambled = False
         elif filled[q] == 0:
@@ -145,9 +145,10 @@ def _fullest(filled):
 
 
 @kernel
-def _launch(work, n, light):
+def _launch(work, n, light, channels):
     for field in range(work.shape[0]):
-        value = 1.0
+        # What follows the weights is the order, which begins at zero.
+        value = 1.0 if field < WEIGHT + channels else 0.0
         if field < WEIGHT:
             value = light[field]
         row = work[field]

@@ -16,7 +16,9 @@ from .._jit import kernel, scalar
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
+# Nodes for a cell of the default height above the horizon, and for one that the horizon cuts.
 _NODES = 16
+_NODES_CUT = 96
 
 
 @kernel
@@ -77,32 +79,34 @@ def geometry(rows, columns, theta):
     start = np.broadcast_to(edge_phi[:-1], shape)
     end = np.broadcast_to(edge_phi[1:], shape)
 
-    farthest = np.where((start < math.pi) & (end > math.pi), math.pi, 0.0)
-    valid = np.ones(shape, dtype=bool)
-    for t in (low, high):
-        for phi in (start, end, farthest):
-            valid &= _height(t, phi, theta) >= 0.0
+    # The height has no minimum inside a cell, and a maximum above the horizon only if a corner is
+    # above it too; phi = 180 deg may lie inside the middle one of an odd number of columns.
+    farthest = np.where((start < math.pi) & (end > math.pi), math.pi, start)
+    heights = [_height(t, phi, theta) for t in (low, high) for phi in (start, end, farthest)]
+    valid = np.min(heights, axis=0) >= 0.0
+    cut = ~valid & (np.max(heights, axis=0) > 0.0)
 
-    # The horizon crosses the column edges (and phi = 180 deg inside the middle one of an odd
-    # number of columns) at these theta_h: between them nothing has a kink.
+    # The horizon crosses the column edges at these theta_h: between them nothing has a kink.
     crossings = [start, end] + ([np.full(shape, math.pi)] if columns % 2 else [])
     kinks = [np.clip(_horizon(phi, theta), low, high) for phi in crossings]
     bounds = np.sort(np.stack([low, *kinks, high]), axis=0)
     solid = np.zeros(shape)
     projected = np.zeros(shape)
     for a, b in zip(bounds[:-1], bounds[1:], strict=True):
-        some = b > a
-        d_solid, d_projected = _piece(a[some], b[some], start[some], end[some], theta)
-        solid[some] += d_solid
-        projected[some] += d_projected
+        for kind, nodes in ((valid, _NODES), (cut, _NODES_CUT)):
+            some = kind & (b > a)
+            nodes = max(nodes, _NODES * 90 // rows)
+            d_solid, d_projected = _piece(a[some], b[some], start[some], end[some], theta, nodes)
+            solid[some] += d_solid
+            projected[some] += d_projected
     return valid, solid, projected
 
 
-def _piece(a, b, start, end, theta):
+def _piece(a, b, start, end, theta, n_nodes):
     """Integrals over theta_h in [a, b] and the visible part of phi_h in [start, end]."""
     solid = np.zeros_like(a)
     projected = np.zeros_like(a)
-    for node, weight in zip(*np.polynomial.legendre.leggauss(_NODES), strict=True):
+    for node, weight in zip(*np.polynomial.legendre.leggauss(n_nodes), strict=True):
         # A cubic change of variable flattens the square-root ends of phi_0(theta_h).
         s = 0.5 * (1.0 + node)
         t = a + (b - a) * s * s * (3.0 - 2.0 * s)

@@ -1,0 +1,223 @@
+"""Print the tables of docs/validation.md: how well the engine agrees with its oracles.
+
+Usage: python benchmarks/validation.py [--quick]
+"""
+
+import argparse
+import math
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+
+from goniosim.engine import simulate  # noqa: E402
+from reference import checks, closed_forms  # noqa: E402
+from reference.cell_integrals import integrate_cells  # noqa: E402
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium  # noqa: E402
+
+THETAS = [0, 30, 60, 85, 89]
+ALPHAS = [0.001, 0.05, 0.2, 1.0]
+SLICES = ["classic", "half"]
+
+
+def table(title, head, rows):
+    print(f"\n### {title}\n\n| {' | '.join(head)} |\n|{'---|' * len(head)}")
+    for row in rows:
+        print(f"| {' | '.join(str(cell) for cell in row)} |", flush=True)
+
+
+def closed_form_rows(rays):
+    """Energies of smooth stacks with the deviation from the closed form in standard errors."""
+    stacks = {
+        "plastic, rho 0.5, tau 0.5": (
+            [dielectric(1.5), medium(0.5), lambert(0.5)],
+            lambda c: {"reflected_internal": closed_forms.plastic_albedo(c, 1.5, 0.5, 0.5)},
+        ),
+        "metal, 1.45 + 1i, tau 0.2": (
+            [dielectric(1.5), medium(0.2), conductor(1.45, 1.0)],
+            lambda c: {"reflected_internal": closed_forms.smooth_metal(c, 1.5, 1.45, 1.0, 0.2)[1]},
+        ),
+        "slab, tau 0.5": (
+            [dielectric(1.5), medium(0.5), dielectric(1.0)],
+            lambda c: dict(
+                zip(
+                    ("reflected_direct", "reflected_internal", "transmitted"),
+                    closed_forms.smooth_slab(c, 1.5, 0.5),
+                    strict=True,
+                )
+            ),
+        ),
+        "white furnace": (
+            [dielectric(1.5), lambert(1.0)],
+            lambda c: {"reflected_internal": 1.0 - float(closed_forms.fresnel_dielectric(c, 1.5))},
+        ),
+    }
+    for name, (layers, exact) in stacks.items():
+        result = simulate(make_scene(layers, [0, 60, 85], rows=1, columns=1), rays=rays, seed=1)
+        for m, theta in enumerate((0, 60, 85)):
+            for entry, value in exact(math.cos(math.radians(theta))).items():
+                found = result.audit.energy[entry][m, 0]
+                part = {"reflected_internal": "reflection/internal", "transmitted": "transmission"}.get(entry)
+                if part is None:
+                    error = math.sqrt(value * (1.0 - value) / rays)
+                else:
+                    error = result.components[part].stderr[m, 0, 0, 0]
+                yield name, theta, entry, f"{value:.6f}", f"{found:.6f}", f"{(found - value) / error:+.1f}"
+
+
+def chi_square_rows(rays):
+    """Chi-square per degree of freedom, with its distance from 1 in sigma."""
+
+    def cells(found):
+        return [f"{c.per_dof:.3f} ({c.sigmas:+.1f})" for c in found]
+
+    for slices in SLICES:
+        yield "plastic, smooth coat", "", slices, *cells(checks.plastic_cells(THETAS, slices, rays, 1))
+        for alpha in ALPHAS:
+            found = checks.conductor_cells(alpha, THETAS, slices, rays, 2)
+            yield "rough conductor", alpha, slices, *cells(found)
+    for eta in (1.5, 1.0 / 1.5):
+        for alpha in ALPHAS:
+            found = checks.transmission_cells(alpha, eta, THETAS[:-1], rays, 3)
+            yield f"transmission, 1 to {eta:.3g}", alpha, "classic", *cells(found), ""
+
+
+def integration_rows():
+    for slices in SLICES:
+        for alpha in ALPHAS:
+            density = closed_forms.reflection_density(alpha, 1.45 + 1.0j)
+            top = conductor(1.45, 1.0, alpha)
+            energy, stderr, exact = checks.direct_cells(top, density, THETAS, slices)
+            error = np.abs(energy - exact)
+            total = np.abs(error.sum(axis=(1, 2)) / exact.sum(axis=(1, 2))).max()
+            yield alpha, slices, f"{error.max():.1e}", f"{stderr.max():.1e}", f"{total:.1e}"
+
+
+def error_bar_rows(rays, seeds):
+    cases = {
+        "plastic, classic, 60 deg": (
+            [dielectric(1.5), medium(0.2), lambert(0.5)], 60, "classic",
+            closed_forms.plastic_density(1.5, 0.5, 0.2),
+        ),
+        "conductor, half, 45 deg": (
+            [dielectric(1.0), conductor(1.45, 1.0, 0.3)], 45, "half",
+            closed_forms.reflection_density(0.3, 1.45 + 1.0j),
+        ),
+    }  # fmt: skip
+    for name, (layers, theta, slices, density) in cases.items():
+        energy, stderr, hits = checks.many_seeds(layers, theta, "reflection/internal", slices, rays, seeds)
+        exact = integrate_cells(density, theta, *hits.shape[1:], slices)
+        counted = hits.mean(axis=0) >= checks.ENOUGH_HITS
+        bar = np.sqrt((stderr[:, 0] ** 2).mean(axis=0))
+        z = (energy[:, 0] - exact)[:, counted] / bar[counted]
+        own = (energy[:, 0] - exact)[:, counted] / stderr[:, 0][:, counted]
+        error = z.mean(axis=1).std(ddof=1) / math.sqrt(seeds)
+        yield name, z.size, f"{z.std():.4f}", f"{z.mean():+.4f} ± {error:.4f}", f"{own.std():.4f}"
+
+
+def energy_rows(rays):
+    """Audit of rough coats, with the energy that single-scattering facets lose."""
+    stacks = {
+        "rough coat 0.2 over white": [dielectric(1.5, 0.2), lambert(1.0)],
+        "rough coat 1.0 over white": [dielectric(1.5, 1.0), lambert(1.0)],
+        "metal 0.2 / 0.2": [dielectric(1.5, 0.2), medium(0.2), conductor(1.45, 1.0, 0.2)],
+        "slab 0.2 / 0.2": [dielectric(1.5, 0.2), medium(0.2), dielectric(1.0, 0.2)],
+    }
+    for name, layers in stacks.items():
+        audit = simulate(make_scene(layers, [0, 60, 85], rows=30, columns=60), rays=rays, seed=4).audit
+        for m, theta in enumerate((0, 60, 85)):
+            e = {entry: float(value[m, 0]) for entry, value in audit.energy.items()}
+            lost = e["lost_masked_reflection"] + e["lost_masked_transmission"]
+            difference = e["reflected_direct"] - audit.direct_integrated[m, 0]
+            sigma = difference / math.sqrt(e["reflected_direct"] * (1.0 - e["reflected_direct"]) / rays)
+            energies = (e["reflected_direct"] + e["reflected_internal"], e["transmitted"])
+            absorbed = e["absorbed_media"] + e["absorbed_base"]
+            residual = np.abs(audit.residual[m]).max()
+            yield (
+                name, theta, *(f"{x:.5f}" for x in energies), f"{absorbed:.5f}", f"{lost:.5f}",
+                f"{e['lost_roulette']:+.0e}", f"{residual:.0e}", f"{sigma:+.1f}",
+            )  # fmt: skip
+
+
+def reciprocity_rows(rays):
+    thetas = [0.5, 15.5, 30.5, 45.5, 60.5, 75.5]
+    metal = [dielectric(1.5, 0.2), medium(0.2), conductor(1.45, 1.0, 0.2)]
+    slab = [dielectric(1.5, 0.2), medium(0.2), dielectric(1.0, 0.2)]
+    for name, layers, part in (
+        ("metal", metal, "reflection/internal"),
+        ("slab", slab, "reflection/internal"),
+        ("slab", slab, "transmission"),
+    ):
+        z = checks.exchange_deviations(layers, part, thetas, rays, 5)
+        yield name, part, z.size, f"{(z**2).mean():.3f} ± {math.sqrt(2 / z.size):.3f}", f"{np.abs(z).max():.1f}"
+
+
+def tracer_rows(rays, tracer_rays):
+    deep = [
+        dielectric(1.5, 0.2), medium([0.05, 0.1, 0.4]), dielectric(1.3), medium([0.2, 0.0, 0.1]),
+        dielectric(1.7, 0.05),
+    ]  # fmt: skip
+    for name, base in (
+        ("over a conductor", conductor([1.2, 1.45, 1.9], [1.0, 0.01, 2.0], 0.3)),
+        ("in air", dielectric(1.0, 0.3)),
+    ):
+        for slices in SLICES:
+            deviations, _ = checks.tracer_deviations([*deep, base], 40, slices, rays, tracer_rays)
+            for part, z in deviations.items():
+                if z.size:
+                    yield name, slices, part, z.size, f"{(z**2).mean():.2f}", f"{np.abs(z).max():.1f}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="a tenth of the rays")
+    scale = 0.1 if parser.parse_args().quick else 1.0
+    start = time.perf_counter()
+
+    def rays(count):
+        return int(scale * count)
+
+    table(
+        "Closed forms of smooth stacks",
+        ("stack", "theta", "energy", "exact", "found", "sigma"),
+        closed_form_rows(rays(1e7)),
+    )
+    table(
+        "Every cell against its integrated density: chi-square per degree of freedom (sigma)",
+        ("scene", "alpha", "slice", *(f"{theta} deg" for theta in THETAS)),
+        chi_square_rows(rays(1e7)),
+    )
+    table(
+        "Integrated direct reflection of a rough conductor against the oracle's quadrature",
+        ("alpha", "slice", "largest error of a cell", "largest error bar", "relative error of the sum"),
+        integration_rows(),
+    )
+    table(
+        f"Standardised deviations over {round(200 * scale)} seeds",
+        ("scene", "deviations", "std", "mean", "std with each run's own error bar"),
+        error_bar_rows(300_000, round(200 * scale)),
+    )
+    table(
+        "Energy",
+        ("stack", "theta", "reflected", "transmitted", "absorbed", "lost to masking", "roulette",
+         "residual", "direct, sampled - integrated (sigma)"),
+        energy_rows(rays(1e7)),
+    )  # fmt: skip
+    table(
+        "Reciprocity, alpha 0.2 / 0.2: light and viewer exchanged",
+        ("stack", "component", "pairs of cells", "mean square deviation", "largest"),
+        reciprocity_rows(rays(3e7)),
+    )
+    table(
+        "Four-layer stack against the reference tracer",
+        ("stack", "slice", "part", "deviations", "mean square", "largest"),
+        tracer_rows(rays(4e7), rays(4e6)),
+    )
+    print(f"\n{time.perf_counter() - start:.0f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,131 @@
+"""The driver: schedule, stopping, resuming, overrides, and what a scene does not call for."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from goniosim.engine import probe, simulate, warm_up
+from goniosim.engine import unit as unit_module
+from goniosim.engine.plan import make_plan
+from goniosim.engine.schedule import LARGEST_UNIT, Schedule
+from goniosim.errors import ConfigError
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+
+PLASTIC = [dielectric(1.5, 0.2), medium([0.05, 0.1, 0.8]), lambert([0.1, 0.6, 0.1])]
+
+
+@pytest.mark.parametrize("rays", [100, 101, 12_345, 10**7, 160 * 10**6 + 1])
+def test_schedule_shares_all_rays_evenly(rays):
+    schedule = Schedule(directions=3, rays=rays)
+    shares = {m: [] for m in range(3)}
+    for number in range(len(schedule)):
+        direction, unit, share = schedule[number]
+        assert unit == len(shares[direction])
+        shares[direction].append(share)
+    for sizes in shares.values():
+        assert sum(sizes) == rays
+        assert max(sizes) - min(sizes) <= 1
+        assert max(sizes) <= LARGEST_UNIT
+        assert len(sizes) >= 16
+    assert schedule.checkpoints[-1] == schedule.rounds
+
+
+def test_a_stop_leaves_a_prefix_of_the_complete_result():
+    """Every direction keeps its first work units; the same seed traces the same rays."""
+    scene = make_scene(PLASTIC, [0.0, 60.0], rays=400_000, seed=3)
+    stop = threading.Event()
+
+    def progress(done, total):
+        if done > 0.3 * total:
+            stop.set()
+
+    result = simulate(scene, progress=progress, stop=stop, threads=2)
+    assert result.status == "partial"
+    assert (result.rays > 0).all() and (result.rays < 400_000).all()
+    assert np.abs(result.audit.residual).max() < 1e-12
+    for component in result.components.values():
+        assert np.isfinite(component.bsdf).all() and np.isfinite(component.bsdf_stderr).all()
+    assert result.cost.rays[-1] == pytest.approx(result.rays.mean())
+
+
+def test_a_stop_before_the_first_ray_still_gives_a_sound_result():
+    stop = threading.Event()
+    stop.set()
+    result = simulate(make_scene(PLASTIC, [0.0], rays=1000), stop=stop)
+    assert result.status == "partial"
+    assert result.rays.tolist() == [0]
+    for component in result.components.values():
+        assert np.isfinite(component.energy).all() and np.isfinite(component.stderr).all()
+
+
+def test_interrupted_and_resumed_kernel_calls_change_nothing(monkeypatch):
+    scene = make_scene(PLASTIC, [40.0], rays=30_000)
+    whole = simulate(scene)
+    monkeypatch.setattr(unit_module, "BUDGET", 700)
+    pieces = simulate(scene)
+    for name, component in whole.components.items():
+        assert (component.energy == pieces.components[name].energy).all()
+
+
+def test_overrides_are_recorded_and_checked():
+    scene = make_scene(PLASTIC, [0.0], rays=1e6)
+    result = simulate(scene, rays=5000, seed=11, threads=1)
+    assert result.rays.tolist() == [5000]
+    assert result.seed == 11
+    assert "rays: 5000" in result.config_yaml and "seed: 11" in result.config_yaml
+    with pytest.raises(ConfigError, match="rays"):
+        simulate(scene, rays=3)
+
+
+def test_progress_ends_at_the_total():
+    seen = []
+    simulate(make_scene(PLASTIC, [0.0, 30.0], rays=10_000), progress=lambda done, total: seen.append((done, total)))
+    assert seen[-1] == (20_000, 20_000)
+    assert seen == sorted(seen)
+
+
+def test_probe_measures():
+    scene = make_scene(PLASTIC, [0.0])
+    assert warm_up(scene) >= 0.0
+    found = probe(scene, seconds=0.2)
+    assert found.rays_per_second > 1e4
+    assert 1.0 < found.events_per_ray < 20.0
+
+
+def test_only_distinct_channels_are_traced():
+    metal = [dielectric(1.5, 0.2), medium(0.1), conductor(1.45, [1.0, 0.01, 0.01], 0.2)]
+    assert make_plan(make_scene(metal, [0.0])).n_distinct == 2
+    assert make_plan(make_scene(PLASTIC, [0.0])).n_distinct == 3
+    assert make_plan(make_scene([dielectric(1.5), lambert(0.5)], [0.0])).n_distinct == 1
+
+
+def test_only_possible_components_are_kept():
+    def names(layers):
+        return list(simulate(make_scene(layers, [0.0], rays=100)).components)
+
+    assert names([conductor(1.5, 1.0, 0.2)]) == ["reflection/direct"]
+    assert names([dielectric(1.5, 0.2)]) == ["reflection/direct", "transmission"]
+    assert names(PLASTIC) == ["reflection/direct", "reflection/internal"]
+    slab = [dielectric(1.5, 0.2), dielectric(1.0, 0.2)]
+    assert names(slab) == ["reflection/direct", "reflection/internal", "transmission"]
+
+
+def test_orders_sum_to_their_component():
+    slab = [dielectric(3.0, 0.2), dielectric(1.0, 0.2)]
+    scene = make_scene(slab, [30.0], rays=20_000, orders=3)
+    result = simulate(scene)
+    plain = simulate(make_scene(slab, [30.0], rays=20_000))
+    expected = {
+        "reflection/internal": ["order_2", "order_3", "order_4_and_more"],
+        "transmission": ["order_1", "order_2", "order_3", "order_4_and_more"],
+    }
+    for name, orders in expected.items():
+        component = result.components[name]
+        assert list(component.orders) == orders
+        total = sum(order.energy for order in component.orders.values())
+        assert np.allclose(total, component.energy, rtol=1e-12, atol=1e-18)
+        # The same paths, summed in another order.
+        assert np.allclose(component.energy, plain.components[name].energy, rtol=1e-12, atol=1e-18)
+        assert (component.hits == plain.components[name].hits).all()
+        assert all(order.energy.sum() > 0 for order in component.orders.values())
