@@ -1,0 +1,1 @@
+"""The command line: parses, calls, prints. Physics, files and figures are in the package goniosim."""

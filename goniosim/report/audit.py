@@ -22,6 +22,8 @@ AUDIT_HEADINGS = {
     "lost_event_cap": "lost:\nevent cap",
 }
 
+# Smaller shares of the energy, as the balance of Russian roulette, get no column of their own.
+NEGLIGIBLE = 1e-6
 # Share of the energy from which the loss to single scattering is said in words.
 NOTEWORTHY_LOSS = 0.01
 # Deviation between sampled and integrated direct reflection that chance does not explain.
@@ -69,7 +71,9 @@ def albedo_lines(result):
 def audit_lines(result):
     """Table of where the energy went, in per cent, and a plain word on what the model loses."""
     audit = result.audit
-    shown = [name for name, energy in audit.energy.items() if np.any(energy != 0.0)]
+    largest = {name: np.max(np.abs(energy)) for name, energy in audit.energy.items()}
+    shown = [name for name, energy in largest.items() if energy > NEGLIGIBLE]
+    omitted = [AUDIT_HEADINGS[name] for name, energy in largest.items() if 0.0 < energy <= NEGLIGIBLE]
     header = ["theta [deg]", "channel", *(AUDIT_HEADINGS[name] for name in shown)]
     arrays = [a for name in shown for a in (audit.energy[name], audit.stderr[name])]
     rows = _rows(
@@ -85,6 +89,9 @@ def audit_lines(result):
     residual = np.max(np.abs(audit.residual[result.rays > 0]), initial=0.0)
     lines = ["Energy audit (% of the incident energy, as sampled)", *text.table(header, rows)]
     lines.append(f"  Each line sums to 100 % within {100.0 * residual:.0e} %.")
+    if omitted:
+        names = ", ".join(name.replace("\n", " ") for name in omitted)
+        lines.append(f"  Not shown, since below {100.0 * NEGLIGIBLE:g} %: {names}.")
     return lines + loss_lines(result)
 
 

@@ -40,17 +40,17 @@ def cost_lines(result):
     if seconds > 0.0 and cpu_seconds > 0.0:
         lines.append(
             f"  {text.count(total)} rays in {text.duration(seconds)}: {text.rate(total / seconds)}, "
-            f"{text.rate(total / cpu_seconds)} per processor."
+            f"{text.count(total / cpu_seconds)} rays per CPU-second."
         )
         lines.append(
-            f"  Half the noise takes four times the rays: {text.count(4.0 * result.rays.max())} per direction, "
-            f"about {text.duration(4.0 * seconds)} on this machine."
+            f"  Half the noise takes four times the rays: {text.count(4.0 * result.rays.max())} "
+            f"per direction, about {text.duration(4.0 * seconds)} on this machine."
         )
     return lines
 
 
 def _spread(n):
-    """Indices of at most `MOST_ROWS` checkpoints out of n, evenly in the logarithm, with the last."""
+    """At most `MOST_ROWS` indices of n checkpoints, evenly in the logarithm, with the last."""
     if n <= MOST_ROWS:
         return range(n)
     return sorted({round(p) - 1 for p in np.geomspace(1, n, MOST_ROWS)})

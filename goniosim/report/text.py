@@ -22,7 +22,7 @@ def with_error(value, stderr, decimals=5):
         alone would there be wrong by up to a half). A plain number when there is no error.
     """
     if stderr < 10.0 ** -(decimals + 3):
-        return f"{value:.{decimals}f}"
+        return f"{round(value, decimals) + 0.0:.{decimals}f}"
     exponent = math.floor(math.log10(stderr))
     if stderr / 10.0**exponent < 1.95:
         exponent -= 1

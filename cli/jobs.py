@@ -1,0 +1,154 @@
+"""The materials of one command, one after the other: reserve, compile, simulate, write."""
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+from goniosim.errors import DamagedFileError, ForeignFileError, OutputError
+
+# Kernels from the cache load faster than this; a longer wait deserves a word.
+PATIENCE = 1.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """A scene and the file its result goes to."""
+
+    scene: object
+    path: Path
+
+    @property
+    def name(self):
+        """Name of the material."""
+        return self.scene.material.name
+
+    @property
+    def rays(self):
+        """Rays of all incident directions together."""
+        return len(self.scene.incident.theta_deg) * self.scene.simulation.rays
+
+    def is_finished(self):
+        """Whether the file already holds the complete result of just this scene."""
+        from goniosim.errors import ConfigError
+        from goniosim.scene import parse_scene
+        from goniosim.store import open_result
+
+        try:
+            result = open_result(self.path)
+            earlier = parse_scene(result.config_yaml)
+        except (ForeignFileError, DamagedFileError, ConfigError):
+            return False
+        return result.status == "complete" and earlier.config_hash() == self.scene.config_hash()
+
+    def reserve(self):
+        """Make sure that the file can be written."""
+        from goniosim.report.forecast import file_size
+        from goniosim.store import reserve_output
+
+        return reserve_output(self.path, file_size(self.scene))
+
+
+def plan(scenes, output, folder):
+    """Pair the scenes with their files, and make sure now that all of these can be written.
+
+    Parameters
+    ----------
+    scenes : list of Scene
+    output : str or None
+        As given by the user, for a single material.
+    folder : Path or None
+        For a study.
+
+    Returns
+    -------
+    list of Job
+
+    Raises
+    ------
+    OutputError
+    """
+    if folder is None:
+        (scene,) = scenes
+        planned = [Job(scene, Path(output or f"{scene.material.name}.h5"))]
+    else:
+        planned = [Job(scene, folder / f"{scene.material.name}.h5") for scene in scenes]
+    make_folder(planned[0].path.parent)
+    for job in planned:
+        # Kept only for the material at work: a killed study then leaves a single hidden file behind.
+        job.reserve().release()
+    return planned
+
+
+def make_folder(folder):
+    """Create a folder and those above it.
+
+    Raises
+    ------
+    OutputError
+    """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"{folder}: the folder cannot be created: {error.strerror}; choose another place"
+        ) from error
+
+
+def run(jobs, progress, signals, verbose):
+    """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
+    from goniosim.engine import simulate
+    from goniosim.report.forecast import effects_text
+    from goniosim.report.text import duration
+    from goniosim.store import write_result
+
+    for number, job in enumerate(jobs, 1):
+        if signals.signum is not None:
+            return
+        signals.gathering = False
+        label = f"{number}/{len(jobs)} {job.name}" if len(jobs) > 1 else job.name
+        if verbose:
+            progress.note(effects_text(job.scene))
+        with job.reserve() as reservation:
+            seconds = _warm_up(job.scene, progress)
+            if verbose:
+                progress.note(f"{label}: kernels ready after {duration(seconds)}")
+            progress.begin(label)
+            signals.gathering = True
+            result = simulate(job.scene, progress=progress.update, stop=signals.event)
+            if not result.rays.any():
+                progress.note(f"stopped by {signals.name} before the first rays: nothing was written")
+                return
+            write_result(result, job.path, reservation=reservation)
+        if result.status == "partial":
+            percent = 100.0 * result.rays.sum() / job.rays
+            progress.note(
+                f"stopped by {signals.name}: {job.path} holds {percent:.0f} % of the rays (partial)"
+            )
+        yield job, result
+
+
+def _warm_up(scene, progress):
+    """Compile or load the kernels, saying so when it takes long; return the seconds.
+
+    The compiler cannot be interrupted, so it runs in a thread of its own while
+    this one stays ready to be.
+    """
+    from goniosim.engine import warm_up
+
+    outcome = {}
+
+    def compile_kernels():
+        try:
+            outcome["seconds"] = warm_up(scene)
+        except BaseException as error:
+            outcome["error"] = error
+
+    thread = threading.Thread(target=compile_kernels, daemon=True)
+    thread.start()
+    thread.join(PATIENCE)
+    if thread.is_alive():
+        progress.note("compiling the kernels; this is needed once")
+        thread.join()
+    if "error" in outcome:
+        raise outcome["error"]
+    return outcome["seconds"]

@@ -1,0 +1,41 @@
+"""The command `goniosim`. Only click and the standard library are imported here, so that help is instant."""
+
+import sys
+
+import click
+
+from .check import check
+from .info import info
+from .plot import plot
+from .policy import PolicyGroup, debug_option
+from .schema import schema
+from .simulate import simulate
+
+
+def _show_version(ctx, param, value):
+    if value:
+        import goniosim
+
+        click.echo(f"goniosim {goniosim.__version__}")
+        ctx.exit()
+
+
+@click.group(cls=PolicyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_show_version,
+    help="Show the version and exit.",
+)
+@debug_option
+def main():
+    """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
+    # An old locale that lacks a character must not cost the summary of a long run.
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="replace")
+
+
+for command in (simulate, check, info, plot, schema):
+    main.add_command(command)

@@ -1,0 +1,67 @@
+"""What the user sees of an error: a line on standard error and an exit code; with --debug, the traceback."""
+
+import os
+import sys
+import traceback
+
+import click
+
+from goniosim.errors import ConfigError, GoniosimError
+
+_DEBUG = "goniosim_cli.debug"
+
+
+def _remember(ctx, param, value):
+    if value:
+        ctx.meta[_DEBUG] = True
+
+
+# Accepted before and after the name of the command, so it belongs to both.
+debug_option = click.option(
+    "--debug",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_remember,
+    help="Show the traceback of an error.",
+)
+
+
+class PolicyGroup(click.Group):
+    """A group of commands that explains the errors of all of them in the same way."""
+
+    def invoke(self, ctx):
+        """Run a command and leave with the exit code of whatever goes wrong."""
+        try:
+            return super().invoke(ctx)
+        except (click.exceptions.Exit, click.ClickException, click.Abort):
+            raise
+        except BrokenPipeError:
+            # The reader has seen enough (`| head`). Without this, Python complains at exit about the rest.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            ctx.exit(0)
+        except KeyboardInterrupt:
+            say_error("interrupted")
+            ctx.exit(130)
+        except Exception as error:
+            if ctx.meta.get(_DEBUG):
+                traceback.print_exception(error)
+            for line in _lines(error):
+                click.echo(line, err=True)
+            ctx.exit(getattr(error, "exit_code", 1))
+
+
+def say_error(message):
+    """Print one line on standard error."""
+    click.echo(f"goniosim: {message}", err=True)
+
+
+def _lines(error):
+    if isinstance(error, ConfigError):
+        n = len(error.problems)
+        return [*error.problems, f"goniosim: error: {n} mistake{'s' if n > 1 else ''} in the scene"]
+    if isinstance(error, GoniosimError):
+        return [f"goniosim: error: {error}"]
+    what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    what = " ".join(what.split())
+    return [f"goniosim: error: {what} - this is a bug in goniosim; rerun with --debug to see where"]

@@ -1,0 +1,62 @@
+"""Ctrl-C and SIGTERM: the first asks the simulation to stop, a second Ctrl-C ends it at once."""
+
+import signal
+import threading
+import time
+
+# `timeout` and some batch systems deliver one signal twice: to the process and to its group.
+SAME_SIGNAL = 0.3
+
+NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
+
+
+class Interrupted(BaseException):
+    """Ends the command at once; nothing more is gathered or written."""
+
+
+class StopSignals:
+    """While active, turns signals into a request to stop.
+
+    Attributes
+    ----------
+    event : threading.Event
+        Set by the first signal, if something worth keeping is being gathered.
+    gathering : bool
+        Whether it is; until then the first signal raises `Interrupted`.
+    signum : signal.Signals or None
+        The first signal.
+    """
+
+    def __init__(self):
+        self.event = threading.Event()
+        self.gathering = False
+        self.signum = None
+
+    def __enter__(self):
+        self._earlier = {signum: signal.signal(signum, self._handle) for signum in NAMES}
+        return self
+
+    def __exit__(self, *_):
+        for signum, handler in self._earlier.items():
+            signal.signal(signum, handler)
+
+    @property
+    def name(self):
+        """What the user calls the first signal."""
+        return NAMES[self.signum]
+
+    @property
+    def exit_code(self):
+        """128 and the number of the first signal, as a shell reports it."""
+        return 128 + self.signum
+
+    def _handle(self, signum, frame):
+        now = time.monotonic()
+        if self.signum is None:
+            self.signum = signal.Signals(signum)
+            self._since = now
+            if not self.gathering:
+                raise Interrupted
+            self.event.set()
+        elif signum == signal.SIGINT and now - self._since > SAME_SIGNAL:
+            raise Interrupted

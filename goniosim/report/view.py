@@ -1,0 +1,109 @@
+"""From the directions that an eye sees to the cells of a slice, and back.
+
+In every picture the light comes from the left. Transmitted directions are mirrored to the upper
+side, as they are in the file.
+"""
+
+import numpy as np
+
+OUTSIDE = -1
+INVALID = -2
+
+
+def cell_numbers(cells, direction, theta_deg, view):
+    """Find the cells that hold directions.
+
+    Parameters
+    ----------
+    cells : goniosim.result.Cells
+    direction : int
+        Which of the incident directions.
+    theta_deg : float
+        Its angle; the light stands at phi = 0.
+    view : ndarray, shape (..., 3)
+        Unit vectors; those below the horizon are outside.
+
+    Returns
+    -------
+    ndarray of int64, shape (...)
+        ``row * K + column``, `OUTSIDE` or `INVALID` (a cell that is not wholly above the horizon).
+    """
+    axis = view
+    if cells.parametrization == "half":
+        axis = view + light_direction(theta_deg)
+        axis = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+    coordinate = np.degrees(np.arctan2(np.hypot(axis[..., 0], axis[..., 1]), axis[..., 2]))
+    if cells.parametrization == "half":
+        # Rows are linear in u = sqrt(theta_h pi / 2).
+        coordinate = np.sqrt(90.0 * coordinate)
+    azimuth = np.degrees(np.arctan2(axis[..., 1], axis[..., 0])) % 360.0
+    row = index(cells.row_edges, coordinate)
+    column = index(cells.column_edges, azimuth)
+    number = row * (len(cells.column_edges) - 1) + column
+    number = np.where(cells.valid[direction].ravel()[number], number, INVALID)
+    return np.where(view[..., 2] < 0.0, OUTSIDE, number)
+
+
+def disk(cells, direction, theta_deg, pixels):
+    """Cells seen in an orthographic view from above, as a square of pixels.
+
+    Parameters
+    ----------
+    cells : goniosim.result.Cells
+    direction : int
+    theta_deg : float
+    pixels : int
+        Pixels along each side of the square around the unit disk.
+
+    Returns
+    -------
+    ndarray of int64, shape (pixels, pixels)
+        As `cell_numbers`, top row first.
+    """
+    centres = (np.arange(pixels) + 0.5) * (2.0 / pixels) - 1.0
+    right, up = np.meshgrid(centres, -centres)
+    height_squared = 1.0 - right**2 - up**2
+    height = np.where(height_squared > 0.0, np.sqrt(np.abs(height_squared)), -1.0)
+    # Turned by half a circle, for the light stands on the left.
+    return cell_numbers(cells, direction, theta_deg, np.stack([-right, -up, height], axis=-1))
+
+
+def centre(cells, theta_deg, number):
+    """Direction of the centre of a cell.
+
+    Parameters
+    ----------
+    cells : goniosim.result.Cells
+    theta_deg : float
+        Angle of incidence; the light stands at phi = 0.
+    number : int
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Unit vector; below the horizon for some cells of a half slice.
+    """
+    row, column = divmod(number, len(cells.column_edges) - 1)
+    tilt = np.radians(elevation(cells, 0.5 * (cells.row_edges[row] + cells.row_edges[row + 1])))
+    azimuth = np.radians(0.5 * (cells.column_edges[column] + cells.column_edges[column + 1]))
+    axis = np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
+    if cells.parametrization == "classic":
+        return axis
+    light = light_direction(theta_deg)
+    return 2.0 * (light @ axis) * axis - light
+
+
+def light_direction(theta_deg):
+    """Unit vector to the light, which stands at phi = 0."""
+    theta = np.radians(theta_deg)
+    return np.array([np.sin(theta), 0.0, np.cos(theta)])
+
+
+def elevation(cells, row_coordinate):
+    """Angle theta_v or theta_h in degrees of a row coordinate in degrees."""
+    return row_coordinate**2 / 90.0 if cells.parametrization == "half" else row_coordinate
+
+
+def index(edges, values):
+    """Number of the interval between ``edges`` that holds each of the ``values``."""
+    return np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
