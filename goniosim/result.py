@@ -140,6 +140,8 @@ class Result:
     ----------
     config_yaml : str
         The scene that was simulated, complete with defaults and overrides, as YAML.
+    config_hash : str
+        Fingerprint of what determines the numbers: not the name, not the threads.
     name : str
         Name of the material.
     status : str
@@ -164,6 +166,7 @@ class Result:
     """
 
     config_yaml: str
+    config_hash: str
     name: str
     status: str
     seed: int

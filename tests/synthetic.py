@@ -59,6 +59,7 @@ def make_result(
     totals = {path: component.energy.sum(axis=(2, 3)) for path, component in made.items()}
     return Result(
         config_yaml=config_yaml,
+        config_hash="5" * 64,
         name=name,
         status=status,
         seed=seed,

@@ -59,6 +59,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
         found = estimate.components(plan, run.tallies, run.rays, pool)
     return Result(
         config_yaml=scene.to_yaml(),
+        config_hash=scene.config_hash(),
         name=scene.material.name,
         status="complete" if run.finished else "partial",
         seed=scene.simulation.seed,

@@ -105,6 +105,7 @@ def _result(file):
     attributes = _attributes(file)
     return Result(
         config_yaml=attributes["config_yaml"],
+        config_hash=attributes["config_hash"],
         name=attributes["name"],
         status=attributes["status"],
         seed=attributes["seed"],

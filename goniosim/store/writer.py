@@ -1,6 +1,5 @@
 """From a result in memory to the bytes of a file, and onto the disk."""
 
-import hashlib
 import uuid
 
 import h5py
@@ -107,7 +106,7 @@ def _root_attributes(result):
         "filetype": FILETYPE,
         "schema_version": SCHEMA_VERSION,
         "config_yaml": result.config_yaml,
-        "config_hash": hashlib.sha256(_utf8(result.config_yaml)).hexdigest(),
+        "config_hash": result.config_hash,
         "status": result.status,
         "name": result.name,
         **result.provenance,

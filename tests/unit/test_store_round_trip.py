@@ -1,7 +1,6 @@
 """What is written is what is read."""
 
 import dataclasses
-import hashlib
 import time
 
 import h5py
@@ -93,7 +92,7 @@ def test_header(tmp_path):
         "filetype": "goniosim-result",
         "schema_version": "1.0",
         "config_yaml": result.config_yaml,
-        "config_hash": hashlib.sha256(result.config_yaml.encode()).hexdigest(),
+        "config_hash": result.config_hash,
         "seed": 7,
         "status": "partial",
         "name": "synthetic",
