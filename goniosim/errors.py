@@ -68,6 +68,12 @@ class NewerSchemaError(GoniosimError):
     exit_code = 7
 
 
+class StoppedError(GoniosimError):
+    """The simulation was stopped before there was anything to keep."""
+
+    exit_code = 130
+
+
 class UnusableResultError(GoniosimError):
     """The file is sound, but it lacks what the command needs."""
 

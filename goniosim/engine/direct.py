@@ -61,9 +61,10 @@ def direct_reflection(plan, direction):
     # The index of a dielectric is the same in all channels.
     computed = plan.n_distinct if kind == ROUGH_CONDUCTOR else 1
     for c in range(computed):
-        _integrate_slice(
-            kind, alpha, eta, spectral[:, c], plan.parametrization, light, peak, scale, energy[c], error[c]
-        )
+        for row in range(plan.rows):  # one call would keep Ctrl-C waiting on fine slices
+            _integrate_row(
+                kind, alpha, eta, spectral[:, c], plan.parametrization, light, peak, scale, row, energy[c], error[c]
+            )
     energy[computed:] = energy[0]
     error[computed:] = error[0]
     return energy, error
@@ -88,20 +89,19 @@ def _fresnel(kind, eta, spectral, cosine):
 
 
 @kernel
-def _integrate_slice(kind, alpha, eta, spectral, parametrization, light, peak, scale, energy, error):
+def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, scale, row, energy, error):
     rows, columns = energy.shape
     d_u = HALF_PI / rows
     d_phi = TWO_PI / columns
     todo = np.empty((4 * MAX_DEPTH + 4, 6))
-    for row in range(rows):
-        # Light stands at azimuth 0: the slice is its own mirror image.
-        for column in range((columns + 1) // 2):
-            value, accuracy = _integrate_cell(
-                kind, alpha, eta, spectral, parametrization, light, peak, scale, row * d_u, column * d_phi, d_u, d_phi, todo
-            )
-            for j in (column, columns - 1 - column):
-                energy[row, j] = value
-                error[row, j] = accuracy
+    # Light stands at azimuth 0: the slice is its own mirror image.
+    for column in range((columns + 1) // 2):
+        value, accuracy = _integrate_cell(
+            kind, alpha, eta, spectral, parametrization, light, peak, scale, row * d_u, column * d_phi, d_u, d_phi, todo
+        )
+        for j in (column, columns - 1 - column):
+            energy[row, j] = value
+            error[row, j] = accuracy
 
 
 @kernel

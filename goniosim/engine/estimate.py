@@ -3,7 +3,6 @@
 import numpy as np
 
 from ..result import AUDIT_ENTRIES, Audit, Cells, Component
-from .direct import direct_reflection
 from .layout import DOWN, UP
 from .stages import SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 
@@ -73,7 +72,7 @@ def _sampled(plan, tallies, rays, first, count, contains_delta):
     return _assemble(plan, slices, hits, contains_delta)
 
 
-def components(plan, tallies, rays, pool):
+def components(plan, tallies, rays, direct):
     """All components of the result.
 
     Parameters
@@ -83,14 +82,13 @@ def components(plan, tallies, rays, pool):
         One for each direction.
     rays : list of int
         Rays traced from each direction.
-    pool : concurrent.futures.Executor
-        Runs the integration of the direct reflection, direction by direction.
+    direct : list of (ndarray, ndarray)
+        What `direct.direct_reflection` yields for each direction.
 
     Returns
     -------
     dict of str to goniosim.result.Component
     """
-    direct = list(pool.map(lambda m: direct_reflection(plan, m), range(len(plan.theta_deg))))
     is_delta = int(plan.kinds[0]) in (SMOOTH_DIELECTRIC, SMOOTH_CONDUCTOR)
     found = {"reflection/direct": _assemble(plan, direct, None, is_delta)}
     for side, name in COMPONENT_OF.items():

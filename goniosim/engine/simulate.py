@@ -11,9 +11,11 @@ from importlib.metadata import version
 
 import numpy as np
 
+from ..errors import StoppedError
 from ..result import Cost, Result
 from ..scene import CHANNELS, effects, parse_scene
 from . import estimate
+from .direct import direct_reflection
 from .layout import DOWN, UP
 from .plan import make_plan
 from .schedule import Schedule
@@ -35,7 +37,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
         Called as ``progress(done_rays, total_rays)`` a few times a second, from this thread.
     stop : threading.Event, optional
         When set, tracing ends within a second; the result holds the finished work units and
-        has the status ``partial``.
+        has the status ``partial``. Ctrl-C itself is left to the caller.
 
     Returns
     -------
@@ -45,6 +47,8 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     ------
     goniosim.errors.ConfigError
         If an override is out of range.
+    goniosim.errors.StoppedError
+        If it was stopped before any work unit was finished.
     """
     wanted = {"rays": rays, "seed": seed, "threads": threads}
     overrides = [f"simulation.{key}={value}" for key, value in wanted.items() if value is not None]
@@ -54,9 +58,12 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     plan = make_plan(scene)
     run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)
     run.warm_up()
-    run.trace(progress or (lambda done, total: None), stop or threading.Event())
-    with ThreadPoolExecutor(threads) as pool:
-        found = estimate.components(plan, run.tallies, run.rays, pool)
+    stop = stop or threading.Event()
+    direct = _integrate_direct(plan, threads, stop)
+    run.trace(progress or (lambda done, total: None), stop)
+    if not any(run.rays):
+        raise StoppedError("stopped before the first rays were through: there is nothing to keep")
+    found = estimate.components(plan, run.tallies, run.rays, direct)
     return Result(
         config_yaml=scene.to_yaml(),
         config_hash=scene.config_hash(),
@@ -74,6 +81,16 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
         effects={effect.name: effect.active for effect in effects(scene)},
         provenance=_provenance(threads),
     )
+
+
+def _integrate_direct(plan, threads, stop):
+    """`direct_reflection` of every direction; before tracing, so that a stop need not wait for it."""
+
+    def integrate(direction):
+        return None if stop.is_set() else direct_reflection(plan, direction)
+
+    with ThreadPoolExecutor(threads) as pool:
+        return list(pool.map(integrate, range(len(plan.theta_deg))))
 
 
 def available_cores():

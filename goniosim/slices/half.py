@@ -17,7 +17,7 @@ from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
 # Nodes for a cell of the default height above the horizon, and for one that the horizon cuts.
-_NODES = 16
+_NODES = 10
 _NODES_CUT = 96
 
 
@@ -72,8 +72,9 @@ def geometry(rows, columns, theta):
         Of the part above the horizon, in sr.
     """
     edge_theta = np.linspace(0.0, HALF_PI, rows + 1) ** 2 / HALF_PI
-    edge_phi = np.linspace(0.0, 2.0 * math.pi, columns + 1)
-    shape = (rows, columns)
+    # The slice is its own mirror image: the first half of the columns tells the rest.
+    edge_phi = np.linspace(0.0, 2.0 * math.pi, columns + 1)[: (columns + 1) // 2 + 1]
+    shape = (rows, len(edge_phi) - 1)
     low = np.broadcast_to(edge_theta[:-1, None], shape)
     high = np.broadcast_to(edge_theta[1:, None], shape)
     start = np.broadcast_to(edge_phi[:-1], shape)
@@ -99,7 +100,8 @@ def geometry(rows, columns, theta):
             d_solid, d_projected = _piece(a[some], b[some], start[some], end[some], theta, nodes)
             solid[some] += d_solid
             projected[some] += d_projected
-    return valid, solid, projected
+    mirrored = np.minimum(np.arange(columns), np.arange(columns)[::-1])
+    return valid[:, mirrored], solid[:, mirrored], projected[:, mirrored]
 
 
 def _piece(a, b, start, end, theta, n_nodes):
