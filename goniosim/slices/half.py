@@ -9,6 +9,7 @@ so for a given theta_h the part of the circle above the horizon is |phi_h| < phi
 """
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -16,7 +17,8 @@ from .._jit import kernel, scalar
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
-# Nodes for a cell of the default height above the horizon, and for one that the horizon cuts.
+# Gauss-Legendre nodes for a cell above the horizon, and for one that the horizon cuts; rows
+# higher than a ninetieth of the slice are divided into panels.
 _NODES = 10
 _NODES_CUT = 96
 
@@ -93,13 +95,16 @@ def geometry(rows, columns, theta):
     bounds = np.sort(np.stack([low, *kinks, high]), axis=0)
     solid = np.zeros(shape)
     projected = np.zeros(shape)
+    panels = max(1, 90 // rows)
     for a, b in zip(bounds[:-1], bounds[1:], strict=True):
         for kind, nodes in ((valid, _NODES), (cut, _NODES_CUT)):
             some = kind & (b > a)
-            nodes = max(nodes, _NODES * 90 // rows)
-            d_solid, d_projected = _piece(a[some], b[some], start[some], end[some], theta, nodes)
-            solid[some] += d_solid
-            projected[some] += d_projected
+            low_edge, height = a[some], (b[some] - a[some]) / panels
+            for panel in range(panels):
+                bottom = low_edge + panel * height
+                d_solid, d_projected = _piece(bottom, bottom + height, start[some], end[some], theta, nodes)
+                solid[some] += d_solid
+                projected[some] += d_projected
     mirrored = np.minimum(np.arange(columns), np.arange(columns)[::-1])
     return valid[:, mirrored], solid[:, mirrored], projected[:, mirrored]
 
@@ -108,7 +113,7 @@ def _piece(a, b, start, end, theta, n_nodes):
     """Integrals over theta_h in [a, b] and the visible part of phi_h in [start, end]."""
     solid = np.zeros_like(a)
     projected = np.zeros_like(a)
-    for node, weight in zip(*np.polynomial.legendre.leggauss(n_nodes), strict=True):
+    for node, weight in zip(*_gauss_legendre(n_nodes), strict=True):
         # A cubic change of variable flattens the square-root ends of phi_0(theta_h).
         s = 0.5 * (1.0 + node)
         t = a + (b - a) * s * s * (3.0 - 2.0 * s)
@@ -117,6 +122,11 @@ def _piece(a, b, start, end, theta, n_nodes):
         solid += factor * d_solid
         projected += factor * d_projected
     return solid, projected
+
+
+@cache
+def _gauss_legendre(n):
+    return np.polynomial.legendre.leggauss(n)
 
 
 def _height(t, phi, theta):
