@@ -29,16 +29,13 @@ class Job:
 
     def is_finished(self):
         """Whether the file already holds the complete result of just this scene."""
-        from goniosim.errors import ConfigError
-        from goniosim.scene import parse_scene
-        from goniosim.store import open_result
+        from goniosim.store import read_header
 
         try:
-            result = open_result(self.path)
-            earlier = parse_scene(result.config_yaml)
-        except (ForeignFileError, DamagedFileError, ConfigError):
+            header = read_header(self.path)
+        except (ForeignFileError, DamagedFileError):
             return False
-        return result.status == "complete" and earlier.config_hash() == self.scene.config_hash()
+        return header["status"] == "complete" and header["config_hash"] == self.scene.config_hash()
 
     def reserve(self):
         """Make sure that the file can be written."""
@@ -96,7 +93,6 @@ def make_folder(folder):
 
 def run(jobs, progress, signals, verbose):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
-    from goniosim.engine import simulate
     from goniosim.report.forecast import effects_text
     from goniosim.report.text import duration
     from goniosim.store import write_result
@@ -104,27 +100,37 @@ def run(jobs, progress, signals, verbose):
     for number, job in enumerate(jobs, 1):
         if signals.signum is not None:
             return
-        signals.gathering = False
         label = f"{number}/{len(jobs)} {job.name}" if len(jobs) > 1 else job.name
         if verbose:
             progress.note(effects_text(job.scene))
-        with job.reserve() as reservation:
+        signals.gathering = False
+        with job.reserve() as signals.reservation:
             seconds = _warm_up(job.scene, progress)
             if verbose:
                 progress.note(f"{label}: kernels ready after {duration(seconds)}")
-            progress.begin(label)
-            signals.gathering = True
-            result = simulate(job.scene, progress=progress.update, stop=signals.event)
+            result = _simulate(job.scene, label, progress, signals)
             if not result.rays.any():
                 progress.note(f"stopped by {signals.name} before the first rays: nothing was written")
                 return
-            write_result(result, job.path, reservation=reservation)
+            write_result(result, job.path, reservation=signals.reservation)
         if result.status == "partial":
             percent = 100.0 * result.rays.sum() / job.rays
             progress.note(
-                f"stopped by {signals.name}: {job.path} holds {percent:.0f} % of the rays (partial)"
+                f"stopped by {signals.name}: {job.path} holds {percent:.3g} % of the rays (partial)"
             )
         yield job, result
+
+
+def _simulate(scene, label, progress, signals):
+    from goniosim.engine import simulate
+
+    def report(done_rays, total_rays):
+        if not signals.gathering:
+            progress.begin(label)
+            signals.gathering = True
+        progress.update(done_rays, total_rays)
+
+    return simulate(scene, progress=report, stop=signals.event)
 
 
 def _warm_up(scene, progress):

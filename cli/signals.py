@@ -1,5 +1,6 @@
 """Ctrl-C and SIGTERM: the first asks the simulation to stop, a second Ctrl-C ends it at once."""
 
+import os
 import signal
 import threading
 import time
@@ -10,10 +11,6 @@ SAME_SIGNAL = 0.3
 NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
 
 
-class Interrupted(BaseException):
-    """Ends the command at once; nothing more is gathered or written."""
-
-
 class StopSignals:
     """While active, turns signals into a request to stop.
 
@@ -22,7 +19,9 @@ class StopSignals:
     event : threading.Event
         Set by the first signal, if something worth keeping is being gathered.
     gathering : bool
-        Whether it is; until then the first signal raises `Interrupted`.
+        Whether it is; until then the first signal ends the process at once.
+    reservation : goniosim.store.Reservation or None
+        To be released before the process ends at once.
     signum : signal.Signals or None
         The first signal.
     """
@@ -30,6 +29,7 @@ class StopSignals:
     def __init__(self):
         self.event = threading.Event()
         self.gathering = False
+        self.reservation = None
         self.signum = None
 
     def __enter__(self):
@@ -56,7 +56,14 @@ class StopSignals:
             self.signum = signal.Signals(signum)
             self._since = now
             if not self.gathering:
-                raise Interrupted
+                self._end("before the first rays")
             self.event.set()
         elif signum == signal.SIGINT and now - self._since > SAME_SIGNAL:
-            raise Interrupted
+            self._end("at once: the rays gathered are not kept")
+
+    def _end(self, when):
+        # No exception: the compiler's threads would hold it up, and a destructor might swallow it.
+        if self.reservation is not None:
+            self.reservation.release()
+        os.write(2, f"\ngoniosim: stopped by {self.name} {when}\n".encode())
+        os._exit(self.exit_code)

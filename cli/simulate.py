@@ -1,14 +1,13 @@
 """`goniosim simulate`: from a scene file to result files."""
 
 import contextlib
-import os
 from pathlib import Path
 
 import click
 
 from .options import Count, set_option
-from .policy import debug_option, say_error
-from .signals import Interrupted, StopSignals
+from .policy import debug_option
+from .signals import StopSignals
 
 
 @click.command()
@@ -49,17 +48,10 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
     progress = make_progress(sum(job.rays for job in todo), quiet)
     done = []
     with StopSignals() as signals, contextlib.closing(progress):
-        try:
-            if len(todo) < len(planned):
-                progress.note(f"{len(planned) - len(todo)} of {len(planned)} materials are finished: skipped")
-            for job, result in jobs.run(todo, progress, signals, verbose):
-                done.append(study.row(result, job.path) if many else summary(result, job.path))
-        except Interrupted:
-            progress.close()
-            when = "at once: the rays gathered are not kept" if signals.gathering else "before the first rays"
-            say_error(f"stopped by {signals.name} {when}")
-            # Kernels that still compile in their thread would hold up an orderly exit.
-            os._exit(signals.exit_code)
+        if len(todo) < len(planned):
+            progress.note(f"{len(planned) - len(todo)} of {len(planned)} materials are finished: skipped")
+        for job, result in jobs.run(todo, progress, signals, verbose):
+            done.append(study.row(result, job.path) if many else summary(result, job.path))
     if done and not quiet:
         click.echo(study.study_text(done) if many else done[0])
     if signals.signum is not None:

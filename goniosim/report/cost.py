@@ -40,7 +40,7 @@ def cost_lines(result):
     if seconds > 0.0 and cpu_seconds > 0.0:
         lines.append(
             f"  {text.count(total)} rays in {text.duration(seconds)}: {text.rate(total / seconds)}, "
-            f"{text.count(total / cpu_seconds)} rays per CPU-second."
+            f"{text.rate(total / cpu_seconds, per='CPU-second')}."
         )
         lines.append(
             f"  Half the noise takes four times the rays: {text.count(4.0 * result.rays.max())} "

@@ -6,7 +6,7 @@ from . import text
 
 # Seconds spent on probing one material, and on probing a whole study.
 PROBE = 1.0
-PROBE_STUDY = 10.0
+PROBE_STUDY = 12.0
 
 
 @dataclass(frozen=True)
@@ -127,12 +127,11 @@ def cost_text(made):
             f"  file size   at most {text.size(one.n_bytes)}",
         ]
     else:
-        header = ["material", "directions", "rays per direction", "speed", "time", "file size (at most)"]
+        header = ["material", "rays", "speed", "time", "file at most"]
         rows = [
             [
                 one.name,
-                str(one.directions),
-                text.count(one.rays),
+                text.count(one.directions * one.rays),
                 text.rate(one.rays_per_second),
                 text.duration(one.seconds),
                 text.size(one.n_bytes),

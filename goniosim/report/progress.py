@@ -160,7 +160,7 @@ class LogLines(_Shown):
         self._next_line = now + self._pace
         per_second = self.rays / (now - self._started)
         percent = 100.0 * self.rays / self.total_rays
-        line = f"{self.description}: {percent:.0f} % of {text.count(self.total_rays)} rays"
+        line = f"{self.description}: {percent:.3g} % of {text.count(self.total_rays)} rays"
         if per_second > 0.0:
             left = (self.total_rays - self.rays) / per_second
             line += f", {text.rate(per_second)}, about {text.duration(left)} left"

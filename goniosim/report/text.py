@@ -40,12 +40,12 @@ def count(number):
     return f"{mantissa}e{int(exponent)}"
 
 
-def rate(per_second):
+def rate(rays, per="s"):
     """Format a rate of rays: ``11.8 M rays/s``."""
-    for unit, scale in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
-        if per_second >= scale:
-            return f"{per_second / scale:.3g} {unit} rays/s"
-    return f"{per_second:.3g} rays/s"
+    for unit, scale in (("G ", 1e9), ("M ", 1e6), ("k ", 1e3)):
+        if rays >= scale:
+            return f"{rays / scale:.3g} {unit}rays/{per}"
+    return f"{rays:.3g} rays/{per}"
 
 
 def duration(seconds):
