@@ -56,20 +56,15 @@ def _writable_folder(candidates):
 
 
 def _cache_folder():
-    """First writable of: $XDG_CACHE_HOME or ~/.cache, then the system's temporary folder."""
-    name = f"goniosim-{source_hash()}"
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+    """First writable of: $NUMBA_CACHE_DIR, $XDG_CACHE_HOME or ~/.cache, the system's temporary folder."""
+    name = source_hash()
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     user = os.getuid() if hasattr(os, "getuid") else "user"
-    return _writable_folder([home / "goniosim" / name, Path(tempfile.gettempdir()) / f"goniosim-{user}" / name])
+    parents = [os.environ.get("NUMBA_CACHE_DIR"), home, os.path.join(tempfile.gettempdir(), f"cache-{user}")]
+    return _writable_folder([Path(parent) / "goniosim" / name for parent in parents if parent])
 
 
-if "NUMBA_CACHE_DIR" not in os.environ:
-    _folder = _cache_folder()
-    CACHED = _folder is not None
-    if CACHED:
-        numba.config.CACHE_DIR = str(_folder)
-else:
-    CACHED = True
+CACHE_FOLDER = _cache_folder()
 
 
 def scalar(function):
@@ -79,5 +74,11 @@ def scalar(function):
 
 def kernel(function):
     """Compile a function over arrays; cached on disk, releases the GIL."""
-    # error_model="numpy": the check for division by zero of the default blocks SIMD.
-    return njit(cache=CACHED, nogil=True, error_model="numpy", fastmath=FASTMATH)(function)
+    # The folder is looked up while the decorator runs: other users of numba keep theirs.
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(CACHE_FOLDER)
+    try:
+        # error_model="numpy": the check for division by zero of the default blocks SIMD.
+        return njit(cache=CACHE_FOLDER is not None, nogil=True, error_model="numpy", fastmath=FASTMATH)(function)
+    finally:
+        numba.config.CACHE_DIR = before
