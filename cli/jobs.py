@@ -4,7 +4,7 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-from goniosim.errors import DamagedFileError, ForeignFileError, OutputError
+from goniosim.errors import DamagedFileError, ForeignFileError, OutputError, StoppedError
 
 # Kernels from the cache load faster than this; a longer wait deserves a word.
 PATIENCE = 1.0
@@ -108,9 +108,10 @@ def run(jobs, progress, signals, verbose):
             seconds = _warm_up(job.scene, progress)
             if verbose:
                 progress.note(f"{label}: kernels ready after {duration(seconds)}")
-            result = _simulate(job.scene, label, progress, signals)
-            if not result.rays.any():
-                progress.note(f"stopped by {signals.name} before the first rays: nothing was written")
+            try:
+                result = _simulate(job.scene, label, progress, signals)
+            except StoppedError:
+                progress.note(f"stopped by {signals.name} before the first rays")
                 return
             write_result(result, job.path, reservation=signals.reservation)
         if result.status == "partial":

@@ -85,7 +85,7 @@ class Bar(_Shown):
         Standard error by default.
     """
 
-    FORMAT = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} rays [{elapsed}<{remaining}, {rate_fmt}]"
+    FORMAT = "{desc}{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} rays [{elapsed}<{remaining}, {rate_fmt}]"
 
     def __init__(self, total_rays, stream=None):
         super().__init__(total_rays, stream or sys.stderr)
@@ -102,7 +102,7 @@ class Bar(_Shown):
             # Made only now, so that compilation before the first ray does not spoil the rate.
             self._bar = tqdm(
                 total=self.total_rays,
-                desc=self.description,
+                desc=f"{self.description}: ",
                 unit=" rays",
                 unit_scale=True,
                 dynamic_ncols=True,
@@ -110,11 +110,12 @@ class Bar(_Shown):
                 file=self.stream,
             )
         else:
-            self._bar.set_description(self.description)
+            self._bar.set_description_str(f"{self.description}: ")
 
     def update(self, done_rays, total_rays):
         self.rays = self.earlier_rays + done_rays
-        self._try(self._bar.update, self.rays - self._bar.n)
+        if self._bar is not None:
+            self._try(self._bar.update, self.rays - self._bar.n)
 
     def note(self, message):
         if self._bar is None:

@@ -113,6 +113,7 @@ def as_data(result):
         "effects": {name: bool(active) for name, active in result.effects.items()},
         "provenance": dict(result.provenance),
         "config_yaml": result.config_yaml,
+        "config_hash": result.config_hash,
     }
 
 

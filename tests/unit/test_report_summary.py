@@ -1,0 +1,148 @@
+"""The tables of a summary, and the same as plain data."""
+
+import json
+
+import numpy as np
+import pytest
+from synthetic import make_result
+
+from goniosim.report import audit, cost, study, summary
+
+
+@pytest.fixture
+def result():
+    return make_result(channels=("R", "G", "B"))
+
+
+def _line(lines, start):
+    (found,) = [line for line in lines if line.strip().startswith(start)]
+    return found
+
+
+def test_albedo_of_a_sampled_component_has_the_error_of_the_audit(result):
+    result.audit.energy["reflected_internal"][1, 2] = 0.12345
+    result.audit.stderr["reflected_internal"][1, 2] = 0.0003
+    assert "0.1235 ± 0.0003" in audit.albedo_lines(result)[-1]
+
+
+def test_albedo_of_the_direct_reflection_is_the_integrated_one(result):
+    result.audit.direct_integrated[:] = 0.0625
+    result.audit.direct_integrated_stderr[:] = 0.0
+    assert all("0.06250" in line for line in audit.albedo_lines(result)[2:])
+
+
+def test_channels_that_agree_share_a_row(result):
+    for arrays in (result.audit.energy, result.audit.stderr):
+        for array in arrays.values():
+            array[:, 2] = array[:, 1]
+    for array in (result.audit.direct_integrated, result.audit.direct_integrated_stderr):
+        array[:, 2] = array[:, 1]
+    rows = audit.albedo_lines(result)[2:]
+    assert len(rows) == 4
+    assert sum("GB" in row for row in rows) == 2
+
+
+def test_audit_shows_every_entry_that_has_energy_and_only_those(result):
+    for entry in result.audit.energy:
+        result.audit.energy[entry][:] = 0.0
+    result.audit.energy["reflected_internal"][:] = 1.0
+    result.audit.energy["lost_roulette"][:] = 1e-8
+    header = " ".join(audit.audit_lines(result)[1:3])
+    assert "internal" in header
+    assert "lost" not in header
+    assert any("Not shown" in line and "lost: roulette" in line for line in audit.audit_lines(result))
+
+
+def test_an_audit_that_does_not_close_is_seen(result):
+    result.audit.energy["absorbed_base"][0, 0] += 0.25
+    assert "within 3e+01 %" in _line(audit.audit_lines(result), "Each line sums")
+
+
+@pytest.mark.parametrize(("lost", "said"), [(0.009, False), (0.011, True), (0.2, True)])
+def test_a_loss_of_more_than_one_per_cent_is_said_in_words(result, lost, said):
+    result.audit.energy["lost_masked_reflection"][:] = 0.0
+    result.audit.energy["lost_masked_transmission"][:] = 0.0
+    result.audit.energy["lost_masked_reflection"][1, 0] = 0.6 * lost
+    result.audit.energy["lost_masked_transmission"][1, 0] = 0.4 * lost
+    lines = audit.loss_lines(result)
+    assert bool(lines) == said
+    if said:
+        assert f"{100 * lost:.1f} % of the energy (theta 60, channel R)" in lines[0]
+
+
+def test_direct_reflection_is_compared_in_standard_errors(result):
+    result.audit.energy["reflected_direct"][1, 1] = 0.10
+    result.audit.stderr["reflected_direct"][1, 1] = 0.003
+    result.audit.direct_integrated[:] = result.audit.energy["reflected_direct"]
+    result.audit.direct_integrated[1, 1] = 0.12
+    result.audit.direct_integrated_stderr[1, 1] = 0.004
+    assert audit.direct_deviation(result)[1, 1] == pytest.approx(-4.0)
+    assert np.count_nonzero(audit.direct_deviation(result)) == 1
+    assert "4.0 sigma (theta 60, channel G)" in audit.direct_lines(result)[0]
+    assert len(audit.direct_lines(result)) == 1
+    result.audit.direct_integrated[1, 1] = 0.13
+    assert "Warning" in audit.direct_lines(result)[1]
+
+
+def test_a_difference_without_noise_is_not_taken_for_agreement(result):
+    result.audit.stderr["reflected_direct"][:] = 0.0
+    result.audit.direct_integrated_stderr[:] = 0.0
+    assert np.all(np.abs(audit.direct_deviation(result)) > audit.ALARMING_SIGMAS)
+
+
+def test_a_direction_without_rays_is_named_so_and_divides_nothing(result):
+    result.rays = np.array([100, 0])
+    text = summary.summary(result)
+    assert text.count("not traced") == 3 + 5
+    assert "between 0 and 100" in text
+
+
+def test_halving_the_noise_costs_four_times_the_last_checkpoint(result):
+    result.cost.seconds[:] = [10.0, 20.0, 45.0]
+    assert "4e5 per direction, about 3 min on this machine" in cost.cost_lines(result)[-1]
+
+
+def test_a_long_list_of_checkpoints_is_thinned_but_keeps_its_end(result):
+    n = 1000
+    result.cost.rays = np.arange(1.0, n + 1)
+    result.cost.seconds = result.cost.cpu_seconds = np.arange(1.0, n + 1)
+    result.cost.error = {"transmission": np.ones(n)}
+    rows = cost.cost_lines(result)[2:-2]
+    assert len(rows) <= cost.MOST_ROWS
+    assert rows[-1].split()[0] == "1000"
+
+
+def test_no_checkpoint_no_table(result):
+    empty = np.empty(0)
+    result.cost.rays = result.cost.seconds = result.cost.cpu_seconds = empty
+    assert cost.cost_lines(result) == []
+
+
+def test_description_tells_status_effects_and_origin(result):
+    text = summary.description(result)
+    for words in ("synthetic  (complete)", "classic slices, 6 x 8 cells", "1e5, seed 1", "2024-05-01T12:00:00Z"):
+        assert words in text
+    assert "Effects simulated: absorption, colour" in text
+    assert "not called for: orders, transmission" in text
+    assert "transmission contains a perfectly sharp (Dirac) part" in text
+
+
+def test_plain_data_survives_json_and_agrees_with_the_result(result):
+    data = json.loads(json.dumps(summary.as_data(result), allow_nan=False))
+    assert data["albedo"]["transmission"]["value"] == result.audit.energy["transmitted"].tolist()
+    assert data["audit"]["absorbed_base"]["stderr"] == result.audit.stderr["absorbed_base"].tolist()
+    assert data["cost"]["error"]["transmission"] == result.cost.error["transmission"].tolist()
+    assert data["slice"] == {"parametrization": "classic", "rows": 6, "columns": 8}
+    assert data["config_hash"] == result.config_hash
+
+
+def test_a_study_has_one_line_for_each_material(result, tmp_path):
+    path = tmp_path / "a.h5"
+    path.write_bytes(bytes(1234))
+    result.audit.energy["lost_masked_reflection"][:] = 0.125
+    result.audit.energy["lost_masked_transmission"][:] = 0.0
+    row = study.row(result, path)
+    assert row[:3] == ["synthetic", "complete", "2e5"]
+    assert "12.5 %" in row
+    assert row[-1] == "1.23 kB"
+    assert study.study_text([row, row]).count("synthetic") == 2
