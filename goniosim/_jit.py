@@ -30,7 +30,7 @@ from numba import njit
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 _PACKAGE = Path(__file__).resolve().parent
-_COMPILED = ("optics", "slices", "engine")
+_COMPILED = ("optics", "slices", "engine", "models")
 
 
 def source_hash():

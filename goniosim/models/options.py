@@ -1,0 +1,112 @@
+"""Options of the models: frozen dataclasses whose fields carry their allowed values and meaning."""
+
+import dataclasses
+from collections.abc import Mapping
+
+from goniosim.errors import ConfigError
+from goniosim.scene.problems import closest, listed
+
+
+@dataclasses.dataclass(frozen=True)
+class OptionInfo:
+    """One option of a model: name, default, allowed values, and what it decides."""
+
+    name: str
+    default: object
+    values: tuple
+    meaning: str
+
+
+def option(values, meaning):
+    """A field of an options dataclass; the first of ``values`` is the default."""
+    return dataclasses.field(default=values[0], metadata={"values": values, "meaning": meaning})
+
+
+def masking_option():
+    """How the masking of light and view combine; the same choice in every model."""
+    return option(
+        ("separable", "correlated"),
+        "Smith masking G1(l) G1(v) of Walter et al. 2007, or height-correlated",
+    )
+
+
+def conductor_index_option():
+    """What the index of a conductor in the scene means in the Weidlich-Wilkie family."""
+    return option(
+        ("relative", "absolute"),
+        "index of a conductor: relative to the medium above it, or as it stands in the scene",
+    )
+
+
+def t_roughness_option():
+    """Which interface gives the GGX width to the G of the term for total internal reflection."""
+    return option(
+        ("outer", "inner"), "GGX width in the G of t: that of the upper or of the lower interface"
+    )
+
+
+def t_masking_option():
+    """Form of the G of the term for total internal reflection."""
+    return option(("smith", "vgroove"), "form of the G of t: that of the lobes, or V-grooves of 1967")
+
+
+def describe(options):
+    """List the options of an options dataclass.
+
+    Returns
+    -------
+    list of OptionInfo
+    """
+    return [
+        OptionInfo(field.name, field.default, field.metadata["values"], field.metadata["meaning"])
+        for field in dataclasses.fields(options)
+    ]
+
+
+def parse_options(name, options, given):
+    """Check the options given for a model.
+
+    Parameters
+    ----------
+    name : str
+        Of the model, for the message.
+    options : type
+        Options dataclass of the model.
+    given : mapping of str, instance of ``options``, or None
+        Values may be text, as on a command line.
+
+    Returns
+    -------
+    instance of ``options``
+
+    Raises
+    ------
+    ConfigError
+        With one line for each unknown option or value.
+    """
+    if given is None:
+        given = {}
+    if dataclasses.is_dataclass(given):
+        given = dataclasses.asdict(given)
+    if not isinstance(given, Mapping):
+        raise ConfigError(f"model {name}: options must be a mapping of names to values [got {given!r}]")
+    known = {info.name: info for info in describe(options)}
+    accepted, problems = {}, []
+    for key, value in given.items():
+        if key not in known:
+            problems.append(f"model {name}: has no option {key!r}; {_choice(key, list(known))}")
+            continue
+        values = {str(allowed).lower(): allowed for allowed in known[key].values}
+        if str(value).lower() in values:
+            accepted[key] = values[str(value).lower()]
+        else:
+            problem = f"model {name}: option {key}: {_choice(str(value), list(values))} [got {value!r}]"
+            problems.append(problem)
+    if problems:
+        raise ConfigError(problems)
+    return options(**accepted)
+
+
+def _choice(word, known):
+    guess = closest(word, known)
+    return f"choose {listed(known, 'or')}" + (f" (did you mean {guess}?)" if guess else "")
