@@ -1,7 +1,5 @@
 """The command `goniosim`. Only click and the standard library are imported here, so that help is instant."""
 
-import sys
-
 import click
 
 from .check import check
@@ -32,9 +30,6 @@ def _show_version(ctx, param, value):
 @debug_option
 def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
-    # An old locale that lacks a character must not cost the summary of a long run.
-    for stream in (sys.stdout, sys.stderr):
-        stream.reconfigure(errors="replace")
 
 
 for command in (simulate, check, info, plot, schema):

@@ -1,0 +1,113 @@
+"""Ctrl-C and SIGTERM, in a process of its own."""
+
+import signal
+import threading
+
+import pytest
+
+from goniosim.store import open_result
+
+# More than any machine traces during a test.
+FOREVER = "1e12"
+
+
+def _wait_for(process, words):
+    """Read standard error until a line holds the words; stop the process if that never happens."""
+    guard = threading.Timer(300.0, process.kill)
+    guard.start()
+    try:
+        lines = []
+        for line in process.stderr:
+            lines.append(line)
+            if words in line:
+                return lines
+        pytest.fail(f"{words!r} never came: {''.join(lines)}")
+    finally:
+        guard.cancel()
+
+
+@pytest.mark.parametrize(("signum", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_what_was_gathered_is_kept(start, folder, signum, code):
+    process = start("simulate", "scene.yaml", "--rays", FOREVER)
+    _wait_for(process, "% of 1e12 rays")
+    process.send_signal(signum)
+    out, err = process.communicate()
+    assert process.returncode == code
+    result = open_result(folder / "small.h5")
+    assert result.status == "partial"
+    assert 0 < result.rays[0] < 1e12
+    assert abs(result.audit.residual).max() < 1e-12
+    assert "% of the rays (partial)" in err
+    assert "small  (partial)" in out
+    assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "small.h5", "study.yaml"]
+
+
+def test_a_stopped_study_keeps_its_part_and_goes_on_later(start, goniosim, folder):
+    goniosim("simulate", "study.yaml", "-q", "--rays", "1e3", "-o", "out")
+    process = start("simulate", "study.yaml", "--rays", FOREVER, "-o", "out")
+    _wait_for(process, "1/3 coat-0.1: ")
+    process.send_signal(signal.SIGINT)
+    process.communicate()
+    assert process.returncode == 130
+    assert open_result(folder / "out" / "coat-0.1.h5").status == "partial"
+    assert open_result(folder / "out" / "coat-0.2.h5").rays.tolist() == [1000]
+    _, _, err = goniosim("simulate", "study.yaml", "--rays", "1e3", "-o", "out")
+    assert "2 of 3 materials are finished: skipped" in err
+    assert open_result(folder / "out" / "coat-0.1.h5").status == "complete"
+
+
+_SLOW_COMPILER = """
+import sys, time
+import goniosim.engine
+goniosim.engine.warm_up = lambda scene: time.sleep(600)
+from goniosim_cli.main import main
+main()
+"""
+
+
+def test_before_the_first_rays_there_is_nothing_to_keep_and_nothing_to_wait_for(python, folder):
+    process = python(_SLOW_COMPILER, "simulate", "scene.yaml")
+    _wait_for(process, "compiling the kernels")
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert out == ""
+    assert err.strip() == "goniosim: stopped by Ctrl-C before the first rays"
+    assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "study.yaml"]
+
+
+_DEAF_ENGINE = """
+import sys, time
+import goniosim.engine
+def deaf(scene, progress, stop):
+    progress(1, 10)
+    print("tracing", file=sys.stderr, flush=True)
+    stop.wait()
+    time.sleep(0.5)
+    print("asked to stop", file=sys.stderr, flush=True)
+    time.sleep(600)
+goniosim.engine.simulate = deaf
+from goniosim_cli.main import main
+main()
+"""
+
+
+def test_a_second_ctrl_c_ends_at_once(python, folder):
+    process = python(_DEAF_ENGINE, "simulate", "scene.yaml")
+    _wait_for(process, "tracing")
+    process.send_signal(signal.SIGINT)
+    _wait_for(process, "asked to stop")
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "stopped by Ctrl-C at once: the rays gathered are not kept" in err
+    assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "study.yaml"]
+
+
+def test_one_signal_delivered_twice_is_one(python, folder):
+    process = python(_DEAF_ENGINE.replace("time.sleep(600)", "raise SystemExit(99)"), "simulate", "scene.yaml")
+    _wait_for(process, "tracing")
+    process.send_signal(signal.SIGTERM)
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=60)
+    assert process.returncode == 99
