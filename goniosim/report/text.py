@@ -13,7 +13,7 @@ def with_error(value, stderr, decimals=5):
     value, stderr : float
     decimals : int
         Decimals of a value whose standard error is zero (known without noise) or more than
-        three places further down.
+        three places further down; a small one gets four digits instead.
 
     Returns
     -------
@@ -22,7 +22,8 @@ def with_error(value, stderr, decimals=5):
         alone would there be wrong by up to a half). A plain number when there is no error.
     """
     if stderr < 10.0 ** -(decimals + 3):
-        return f"{round(value, decimals) + 0.0:.{decimals}f}"
+        small = 0.0 < abs(value) < 10.0 ** (3 - decimals)
+        return f"{value:.4g}" if small else f"{value:.{decimals}f}"
     exponent = math.floor(math.log10(stderr))
     if stderr / 10.0**exponent < 1.95:
         exponent -= 1
