@@ -38,7 +38,7 @@ class Job:
         return header["status"] == "complete" and header["config_hash"] == self.scene.config_hash()
 
     def reserve(self):
-        """Make sure that the file can be written."""
+        """Make sure that the file can be written, and keep room for it."""
         from goniosim.report.forecast import file_size
         from goniosim.store import reserve_output
 
@@ -46,7 +46,7 @@ class Job:
 
 
 def plan(scenes, output, folder):
-    """Pair the scenes with their files, and make sure now that all of these can be written.
+    """Pair the scenes with their files, and make sure now that nothing stands in the way of these.
 
     Parameters
     ----------
@@ -64,6 +64,8 @@ def plan(scenes, output, folder):
     ------
     OutputError
     """
+    from goniosim.store import reserve_output
+
     if folder is None:
         (scene,) = scenes
         planned = [Job(scene, Path(output or f"{scene.material.name}.h5"))]
@@ -71,8 +73,8 @@ def plan(scenes, output, folder):
         planned = [Job(scene, folder / f"{scene.material.name}.h5") for scene in scenes]
     make_folder(planned[0].path.parent)
     for job in planned:
-        # Kept only for the material at work: a killed study then leaves a single hidden file behind.
-        job.reserve().release()
+        # Room is kept only for the material at work: a killed study leaves a single hidden file behind.
+        reserve_output(job.path, 0).release()
     return planned
 
 

@@ -46,7 +46,8 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     goniosim.errors.ConfigError
         The scene file, or one of the other arguments, is wrong.
     """
-    from goniosim import engine, scene as scenes
+    from goniosim import engine
+    from goniosim import scene as scenes
 
     if not isinstance(scene, scenes.Scene):
         scene = scenes.load_scene(scene)

@@ -47,7 +47,7 @@ def plane_of_incidence(cells, direction, theta_deg, slices, stderr):
     sides.sort(key=lambda point: point[0])
     if not sides:
         return np.empty(0), np.empty((0, len(slices))), np.empty((0, len(slices)))
-    return tuple(np.array(part) for part in zip(*sides))
+    return tuple(np.array(part) for part in zip(*sides, strict=True))
 
 
 def highest(f, sigma, sigmas):
@@ -61,7 +61,7 @@ def _row_patches(cells, direction, azimuth, slices, stderr):
     n_columns = len(cells.column_edges) - 1
     middle = int(index(cells.column_edges, azimuth))
     edges = elevation(cells, cells.row_edges)
-    for row, (low, high) in enumerate(zip(edges[:-1], edges[1:])):
+    for row, (low, high) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
         column_width = np.sin(np.radians(0.5 * (low + high))) * 360.0 / n_columns
         pairs = max(1, round(0.5 * (high - low) / column_width))
         width = min(2 * pairs, max(1, n_columns // 2))
@@ -103,7 +103,7 @@ def _joined(patches, degrees_per_tilt):
 
 
 def _join(group):
-    lows, highs, sizes, f, sigma = zip(*group)
+    lows, highs, sizes, f, sigma = zip(*group, strict=True)
     weights = np.array(sizes)[:, None] / sum(sizes)
     return (
         0.5 * (lows[0] + highs[-1]),

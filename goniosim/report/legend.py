@@ -31,7 +31,9 @@ def add(figure, planes, invalid, dirac):
     dirac : bool
         Whether some light leaves in exactly one direction.
     """
-    lines = {label: line for axes in planes for line, label in zip(*axes.get_legend_handles_labels())}
+    lines = {
+        label: line for axes in planes for line, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
     handles = [lines[label] for label in sorted(lines, key=lambda label: (len(label), "RGB".find(label)))]
     handles += [
         Patch(facecolor=panels.INK, alpha=0.25, label=f"± {panels.BAND_SIGMAS:g} standard errors"),

@@ -61,7 +61,7 @@ def _row(figure, top, result, side, shown, numbers):
     figure.text(0.2 / width, 1.0 - top / height, TITLES[side], fontsize=10.5, fontweight="bold")
     total = _sum([component for name, component in result.components.items() if name.startswith(side)])
     planes = []
-    for column, (i, each) in enumerate(zip(shown, numbers)):
+    for column, (i, each) in enumerate(zip(shown, numbers, strict=True)):
         theta_deg = float(result.theta_deg[i])
         left = LEFT + COLUMN * column
         disk = panels.place(figure, left - 0.22, top + 0.3, DISK_WIDTH, DISK_WIDTH / panels.DISK_ASPECT)

@@ -106,8 +106,9 @@ def curves(axes, channels, angle, f, sigma, sampled):
     for order, (name, c) in enumerate(text.channel_groups(channels, [f, sigma])):
         colour = channel_colour(name, c)
         low, high = (tone.remap(f[:, c] + sign * BAND_SIGMAS * sigma[:, c]) for sign in (-1.0, 1.0))
-        axes.fill_between(angle, low, high, color=colour, alpha=0.25, linewidth=0.0)
-        line = np.where(sampled & (f[:, c] == 0.0), np.nan, tone.remap(f[:, c]))
+        seen = (f[:, c] > 0.0) | (not sampled)
+        axes.fill_between(angle, low, high, where=seen, color=colour, alpha=0.25, linewidth=0.0)
+        line = np.where(seen, tone.remap(f[:, c]), np.nan)
         # Later lines are thinner, so that those that nearly agree are all seen.
         axes.plot(angle, line, color=colour, linewidth=1.6 - 0.35 * order, label=" = ".join(name))
 

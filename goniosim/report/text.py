@@ -93,14 +93,14 @@ def table(header, rows, indent="  ", gap="   "):
     """
     height = max(name.count("\n") for name in header)
     tops = [("\n" * (height - name.count("\n")) + name).split("\n") for name in header]
-    cells = [*map(list, zip(*tops)), *(list(row) for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*cells)]
+    cells = [*map(list, zip(*tops, strict=True)), *(list(row) for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     words_first = any(row[0] and not row[0][0].isdigit() for row in rows)
     lines = []
     for row in cells:
         aligned = [
             text.ljust(width) if words_first and column == 0 else text.rjust(width)
-            for column, (text, width) in enumerate(zip(row, widths))
+            for column, (text, width) in enumerate(zip(row, widths, strict=True))
         ]
         lines.append((indent + gap.join(aligned)).rstrip())
     return lines

@@ -20,7 +20,15 @@ def result(folder):
 def test_info_shows_what_the_file_holds(goniosim, result):
     code, out, err = goniosim("info", "result.h5")
     assert (code, err) == (0, "")
-    for words in ("result.h5  (", "synthetic  (partial)", "Albedo", "Energy audit", "Cost", "Effects", "Origin"):
+    for words in (
+        "result.h5  (",
+        "synthetic  (partial)",
+        "Albedo",
+        "Energy audit",
+        "Cost",
+        "Effects",
+        "Origin",
+    ):
         assert words in out
 
 
@@ -29,7 +37,9 @@ def test_info_as_json_holds_the_numbers_themselves(goniosim, result):
     data = json.loads(out)
     assert code == 0
     assert data["status"] == "partial"
-    assert data["albedo"]["reflection/internal"]["value"] == result.audit.energy["reflected_internal"].tolist()
+    assert (
+        data["albedo"]["reflection/internal"]["value"] == result.audit.energy["reflected_internal"].tolist()
+    )
 
 
 def test_plot_writes_pictures_and_names_them(goniosim, result, folder):

@@ -120,7 +120,12 @@ def test_no_checkpoint_no_table(result):
 
 def test_description_tells_status_effects_and_origin(result):
     text = summary.description(result)
-    for words in ("synthetic  (complete)", "classic slices, 6 x 8 cells", "1e5, seed 1", "2024-05-01T12:00:00Z"):
+    for words in (
+        "synthetic  (complete)",
+        "classic slices, 6 x 8 cells",
+        "1e5, seed 1",
+        "2024-05-01T12:00:00Z",
+    ):
         assert words in text
     assert "Effects simulated: absorption, colour" in text
     assert "not called for: orders, transmission" in text
