@@ -156,7 +156,7 @@ def _warm_up(scene, progress):
     thread.start()
     thread.join(PATIENCE)
     if thread.is_alive():
-        progress.note("compiling the kernels; this is needed once")
+        progress.note("preparing the kernels: compiled in the first run, taken from the cache later")
         thread.join()
     if "error" in outcome:
         raise outcome["error"]

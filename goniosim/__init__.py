@@ -45,6 +45,8 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     ------
     goniosim.errors.ConfigError
         The scene file, or one of the other arguments, is wrong.
+    goniosim.errors.StoppedError
+        It was stopped before there was anything to keep.
     """
     from goniosim import engine
     from goniosim import scene as scenes

@@ -67,7 +67,7 @@ main()
 
 def test_before_the_first_rays_there_is_nothing_to_keep_and_nothing_to_wait_for(python, folder):
     process = python(_SLOW_COMPILER, "simulate", "scene.yaml")
-    _wait_for(process, "compiling the kernels")
+    _wait_for(process, "preparing the kernels")
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
