@@ -10,9 +10,10 @@ Importing the package loads nothing heavy: each name brings its own machinery wh
 
 from importlib import import_module as _import_module
 
-__all__ = ["__version__", "load_scene", "open_result", "simulate"]
+__all__ = ["__version__", "compare", "evaluate_model", "load_scene", "open_result", "simulate"]
 
 _HOMES = {
+    "evaluate_model": "goniosim.models",
     "load_scene": "goniosim.scene",
     "open_result": "goniosim.store",
 }
@@ -59,6 +60,9 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
 def __getattr__(name):
     if name in _HOMES:
         value = getattr(_import_module(_HOMES[name]), name)
+    elif name == "compare":
+        # The package itself, which can be called.
+        value = _import_module("goniosim.compare")
     elif name == "__version__":
         value = _import_module("importlib.metadata").version("goniosim")
     else:

@@ -30,7 +30,7 @@ from numba import njit
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 _PACKAGE = Path(__file__).resolve().parent
-_COMPILED = ("optics", "slices", "engine", "models")
+_COMPILED = ("optics", "slices", "engine", "models", "compare")
 
 
 def source_hash():

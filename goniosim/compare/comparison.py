@@ -1,0 +1,155 @@
+"""The comparison of published models with simulated slices: what `goniosim.compare` does."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import ConfigError, UnusableResultError
+from ..result import Result
+from ..store import open_result
+from .integrate import make_pool
+from .material import MaterialComparison, compare_material
+from .rows import material_rows
+from .variants import check_request
+
+MAX_SUBCELLS = 99
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Models against the results of simulations.
+
+    Attributes
+    ----------
+    materials : list of MaterialComparison
+        One for each result, with the integrated slices.
+    errors : list of dict
+        The table of errors, with the keys of `goniosim.compare.rows.COLUMNS`.
+    """
+
+    materials: list[MaterialComparison]
+    errors: list[dict]
+
+    def rows(self, component=None, channel="mean", theta_deg="all"):
+        """Rows of the table in which a model applies.
+
+        Parameters
+        ----------
+        component : str, optional
+            The main component of each material by default.
+        channel : str
+        theta_deg : float or str
+
+        Returns
+        -------
+        list of dict
+        """
+        main = {material.result.name: material.components[0] for material in self.materials}
+        return [
+            row
+            for row in self.errors
+            if row["component"] == (component or main[row["material"]])
+            and row["channel"] == channel
+            and row["theta_deg"] == theta_deg
+            and row["note"] is None
+        ]
+
+
+def compare(results, models=None, options=None, subcells=5, *, allow_partial=False):
+    """Compare published models with simulated slices.
+
+    Each model is integrated over the very cells of the result, and its error is Eq. 4 of Bati et
+    al. 2019 without the noise of the simulation.
+
+    Parameters
+    ----------
+    results : Result, path, or sequence of them
+        A path may be a result file or a folder of them. All their slices are kept in memory: give a
+        large study piece by piece.
+    models : sequence of str, optional
+        Names from `goniosim.models.MODELS`; all by default.
+    options : mapping of str to mapping, optional
+        Options of models, as in ``{"ww09": {"masking": "correlated"}}``.
+    subcells : int
+        Sub-cells along each side of a cell.
+    allow_partial : bool
+        Accept results of interrupted simulations.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ConfigError
+        A model, an option or ``subcells`` is wrong.
+    UnusableResultError
+        A result is partial or empty, or two have the same name.
+    ForeignFileError, DamagedFileError, NewerSchemaError
+        A file is not a result that can be read.
+    """
+    request = check_request(models, options)
+    check_subcells(subcells)
+    sources = results if isinstance(results, (list, tuple)) else [results]
+    found = []
+    for source in sources:
+        found += [source] if isinstance(source, Result) else result_files(source)
+    materials = []
+    with make_pool() as pool:
+        for each in found:
+            result = each if isinstance(each, Result) else open_result(each)
+            check_usable(result, allow_partial)
+            if any(result.name == other.result.name for other in materials):
+                raise UnusableResultError(f"{result.name}: is the name of two results; rename one of the materials")
+            materials.append(compare_material(result, request, subcells, pool))
+    return Comparison(materials, [row for material in materials for row in material_rows(material)])
+
+
+def check_subcells(subcells):
+    """Raise a ConfigError if ``subcells`` is not a sensible number."""
+    if not isinstance(subcells, int) or not 1 <= subcells <= MAX_SUBCELLS:
+        raise ConfigError(f"subcells must be a whole number from 1 to {MAX_SUBCELLS} [got {subcells!r}]")
+
+
+def check_usable(result, allow_partial):
+    """Raise an UnusableResultError if a result cannot be compared with.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+    allow_partial : bool
+    """
+    if result.status == "partial" and not allow_partial:
+        raise UnusableResultError(
+            f"{result.name}: the simulation was interrupted (partial); finish it, or allow partial results"
+        )
+    if not (result.rays > 0).all():
+        raise UnusableResultError(
+            f"{result.name}: has incident directions without a single ray; simulate it again"
+        )
+
+
+def result_files(path):
+    """Result files that a path stands for.
+
+    Parameters
+    ----------
+    path : path-like
+        A file, or a folder of which all ``*.h5`` are taken.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    UnusableResultError
+        A folder without such files.
+    """
+    path = Path(os.fspath(path))
+    if not path.is_dir():
+        return [path]
+    files = sorted(path.glob("*.h5"))
+    if not files:
+        raise UnusableResultError(f"{path}: holds no result files (*.h5); give the folder of a study's results")
+    return files

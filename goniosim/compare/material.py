@@ -1,0 +1,212 @@
+"""The comparison of all models with one material."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..models import MODELS, prepare
+from ..scene import parse_scene
+from .grid import make_grid
+from .integrate import integrate, to_slice
+from .measures import Measures, measure, rmse
+from .refine import finer, refine
+from .variants import Variant, components_for, variants_for
+
+# An RMSE that differs by more than this share from that of the converged integration is marked.
+CONVERGED = 0.02
+# How many times finer the sub-cells are with which the sub-cells asked for are compared.
+FINER = 3
+# Width of a Gaussian-like lobe that stands for a smooth interface in some models.
+SMOOTH = 1e-4
+
+
+@dataclass(frozen=True)
+class Slices:
+    """Integrated slices of one variant and component.
+
+    Attributes
+    ----------
+    energy : ndarray, shape (M, C, R, K)
+        Fraction of the incident flux; 0 in cells that are not valid.
+    finer, converged : ndarray, shape (M, C, R, K)
+        The same from finer sub-cells, and integrated adaptively.
+    seconds : float
+        Time of ``energy`` per slice: preparation, evaluation and integration.
+    """
+
+    energy: np.ndarray
+    finer: np.ndarray
+    converged: np.ndarray
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One variant against the reference, in one component.
+
+    Attributes
+    ----------
+    variant : Variant
+    component : str
+    measures, finer, converged : Measures
+        With the sub-cells asked for, with finer ones, and integrated adaptively.
+    seconds : float
+        Time of the model per slice.
+    """
+
+    variant: Variant
+    component: str
+    measures: Measures
+    finer: Measures
+    converged: Measures
+    seconds: float
+
+    def is_converged(self, direction=None, channel=None):
+        """Whether the sub-cells asked for give the RMSE to 2 %; arguments as in `measures.rmse`."""
+        found = rmse(self.measures, direction, channel).raw
+        limit = rmse(self.converged, direction, channel).raw
+        return abs(found - limit) <= CONVERGED * limit
+
+
+@dataclass(frozen=True)
+class MaterialComparison:
+    """All models against one result.
+
+    Attributes
+    ----------
+    result : goniosim.result.Result
+    scene : goniosim.scene.Scene
+    subcells : int
+    variants : list of Variant
+    not_applicable : dict of str to str
+        Models that do not apply, each with the sentence why.
+    components : tuple of str
+        Main component first.
+    compared : list of Compared
+    slices : dict of (str, str) to ndarray, shape (M, C, R, K)
+        Energies by label of the variant and component (``reflection`` only where a model does not
+        split it).
+    """
+
+    result: object
+    scene: object
+    subcells: int
+    variants: list
+    not_applicable: dict
+    components: tuple
+    compared: list
+    slices: dict
+
+    @property
+    def simulation_seconds(self):
+        """Time of the simulation per slice."""
+        seconds = self.result.cost.seconds
+        return float(seconds[-1]) / len(self.result.theta_deg) if len(seconds) else 0.0
+
+    def bsdf(self, label, component):
+        """Slices of a variant in 1/sr, shape (M, C, R, K); direct and internal paths are added up."""
+        return to_bsdf(self.energy(label, component), self.result.cells)
+
+    def energy(self, label, component):
+        """Energies of a variant, shape (M, C, R, K); direct and internal paths are added up."""
+        if (label, component) in self.slices:
+            return self.slices[label, component]
+        parts = (part for part in self.slices if part[0] == label and part[1].startswith(component))
+        return sum(self.slices[part] for part in parts)
+
+    def reference(self, component):
+        """Slices of the simulation and their standard errors in 1/sr, each of shape (M, C, R, K)."""
+        return reference(self.result, component)
+
+
+def compare_material(result, request, subcells, pool, progress=None):
+    """Compare the models with one result.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+    request : dict of str to dict
+        From `variants.check_request`.
+    subcells : int
+        Sub-cells along each side of a cell.
+    pool : concurrent.futures.ThreadPoolExecutor
+    progress : callable, optional
+        Called as ``progress(done, total)`` after every integrated variant.
+
+    Returns
+    -------
+    MaterialComparison
+    """
+    scene = parse_scene(result.config_yaml, f"the scene of {result.name}")
+    variants, not_applicable = variants_for(scene, request)
+    components = components_for(scene)
+    grids = [make_grid(result.cells, m, theta) for m, theta in enumerate(result.theta_deg)]
+    compared, slices = [], {}
+    for done, variant in enumerate(variants):
+        parts = {}
+        for component in components:
+            for part in _parts(scene, variant.model, component):
+                if part not in parts:
+                    parts[part] = _integrated(scene, variant, part, grids, subcells, pool)
+            own = [parts[part] for part in _parts(scene, variant.model, component)]
+            compared.append(_compared(result, variant, component, own))
+        slices |= {(variant.label, part): found.energy for part, found in parts.items()}
+        if progress is not None:
+            progress(done + 1, len(variants))
+    return MaterialComparison(
+        result, scene, subcells, variants, not_applicable, components, compared, slices
+    )
+
+
+def reference(result, component):
+    """BSDF and standard error of a component of a result, ``reflection`` being all that is reflected."""
+    parts = [part for name, part in result.components.items() if name.startswith(component)]
+    bsdf = sum(part.bsdf for part in parts)
+    return bsdf, np.sqrt(sum(part.bsdf_stderr**2 for part in parts))
+
+
+def to_bsdf(energy, cells):
+    """Energies per projected solid angle, shape (M, C, R, K); 0 in cells that are not valid."""
+    size = cells.projected_solid_angle[:, None]
+    lit = cells.valid[:, None] & (size > 0.0)
+    return np.divide(energy, size, out=np.zeros_like(energy), where=lit)
+
+
+def _parts(scene, model, component):
+    """What is integrated for a component: the direct and internal paths apart where the model tells them."""
+    split = ("reflection/direct", "reflection/internal")
+    if component == "reflection" and all(MODELS[model].supports(scene, part) is None for part in split):
+        return split
+    return (component,)
+
+
+def _integrated(scene, variant, component, grids, subcells, pool):
+    """Integrate a variant in all directions."""
+    faces = scene.material.interfaces
+    narrowest = min((face.alpha or SMOOTH for face in faces if face.type != "lambert"), default=1.0)
+    options = dict(variant.options)
+    levels = {"energy": [], "finer": [], "converged": []}
+    # Compiled code is loaded before the clock starts.
+    first = prepare(variant.model, scene, grids[0].theta_deg, component, options)
+    integrate(first, grids[0], 1, pool, grids[0].numbers[:1])
+    seconds = 0.0
+    for grid in grids:
+        started = time.perf_counter()
+        prepared = prepare(variant.model, scene, grid.theta_deg, component, options)
+        coarse, spread = integrate(prepared, grid, subcells, pool)
+        seconds += time.perf_counter() - started
+        fine, suspects = finer(prepared, grid, FINER * subcells, pool, coarse, spread)
+        limit = refine(prepared, grid, narrowest, pool, fine, suspects)
+        for found, energy in zip(levels.values(), (coarse, fine, limit), strict=True):
+            found.append(to_slice(prepared, grid, energy))
+    return Slices(**{name: np.stack(found) for name, found in levels.items()}, seconds=seconds / len(grids))
+
+
+def _compared(result, variant, component, parts):
+    bsdf, stderr = reference(result, component)
+    measures = [
+        measure(to_bsdf(sum(energies), result.cells), bsdf, stderr, result.cells)
+        for energies in zip(*((part.energy, part.finer, part.converged) for part in parts), strict=True)
+    ]
+    return Compared(variant, component, *measures, seconds=sum(part.seconds for part in parts))

@@ -1,0 +1,119 @@
+"""The table of errors: one row for each material, model, component, channel and direction."""
+
+from .measures import rmse
+
+# Column: unit and meaning.
+COLUMNS = {
+    "material": ("", "name of the material"),
+    "model": ("", "name of the model"),
+    "options": ("", "options of the model that are not at their default"),
+    "component": ("", "component of the scattered light"),
+    "channel": ("", "colour channel; mean: mean over the channels"),
+    "theta_deg": ("degree", "incident direction; all: Eq. 4 of Bati et al. 2019, over all directions"),
+    "rmse": ("sr-0.5", "error of the model, the noise of the reference taken out"),
+    "rmse_stderr": ("sr-0.5", "standard error of rmse"),
+    "rmse_upper": ("sr-0.5", "the error of the model lies below with 97.7 % confidence"),
+    "below_noise": ("", "1: the error is not told from noise at two standard errors, and rmse means nothing"),
+    "rmse_eq4": ("sr-0.5", "Eq. 4 as it stands, noise included"),
+    "noise_floor": ("sr-0.5", "Eq. 4 of a perfect model: the noise of the reference"),
+    "rmse_relative": ("1", "rmse over the root of the integral of the squared reference; empty in the dark"),
+    "rmse_finer": ("sr-0.5", "rmse with sub-cells three times as fine along each side"),
+    "rmse_converged": ("sr-0.5", "rmse with adaptive integration of the model"),
+    "converged": ("", "0: sub-cells change the RMSE by more than 2 %, see rmse_converged"),
+    "albedo_reference": ("1", "energy of the reference in the valid cells"),
+    "albedo_reference_stderr": ("1", "standard error of albedo_reference"),
+    "albedo_model": ("1", "energy of the model in the valid cells"),
+    "albedo_error": ("1", "albedo_model minus albedo_reference"),
+    "worst_theta_deg": ("degree", "incident direction of the cell that adds most to the error"),
+    "worst_channel": ("", "its channel"),
+    "worst_row": ("1", "its row"),
+    "worst_column": ("1", "its column"),
+    "worst_difference": ("sr-1", "model minus reference in it"),
+    "worst_stderr": ("sr-1", "standard error of the reference in it"),
+    "subcells": ("1", "sub-cells along each side of a cell"),
+    "model_seconds": ("s", "time of the model per slice, all channels: preparation and integration"),
+    "simulation_seconds": ("s", "time of the simulation per incident direction, all components and channels"),
+    "rays": ("1", "rays of the simulation per incident direction"),
+    "note": ("", "why the model does not apply"),
+}
+
+
+def material_rows(comparison):
+    """Rows of one material.
+
+    Parameters
+    ----------
+    comparison : goniosim.compare.material.MaterialComparison
+
+    Returns
+    -------
+    list of dict
+        With the keys of `COLUMNS`; None where there is nothing to say.
+    """
+    rows = []
+    thetas = comparison.result.theta_deg
+    channels = comparison.result.channels
+    for found in comparison.compared:
+        for direction in [None, *range(len(thetas))]:
+            for channel in [None, *range(len(channels))]:
+                rows.append(_row(comparison, found, direction, channel))
+    for model, reason in comparison.not_applicable.items():
+        row = dict.fromkeys(COLUMNS)
+        row |= {"material": comparison.result.name, "model": model, "options": ""}
+        row |= {"component": comparison.components[0], "channel": "mean", "theta_deg": "all", "note": reason}
+        rows.append(row)
+    return rows
+
+
+def _row(comparison, found, direction, channel):
+    result, measures = comparison.result, found.measures
+    error = rmse(measures, direction, channel)
+    m, c = _worst(measures, direction, channel)
+    directions = slice(None) if direction is None else slice(direction, direction + 1)
+    channels = slice(None) if channel is None else slice(channel, channel + 1)
+    reference = measures.albedo_reference[directions, channels]
+    stderr = measures.albedo_stderr[directions, channels]
+    model = measures.albedo_model[directions, channels]
+    norm = measures.norm[directions, channels].mean(axis=0) ** 0.5
+    return {
+        "material": result.name,
+        "model": found.variant.model,
+        "options": found.variant.options_text,
+        "component": found.component,
+        "channel": "mean" if channel is None else result.channels[channel],
+        "theta_deg": "all" if direction is None else float(result.theta_deg[direction]),
+        "rmse": error.rmse,
+        "rmse_stderr": error.stderr,
+        "rmse_upper": error.upper,
+        "below_noise": int(not error.significant),
+        "rmse_eq4": error.raw,
+        "noise_floor": error.noise_floor,
+        "rmse_relative": error.rmse / float(norm.mean()) if norm.mean() > 0.0 else None,
+        "rmse_finer": rmse(found.finer, direction, channel).rmse,
+        "rmse_converged": rmse(found.converged, direction, channel).rmse,
+        "converged": int(found.is_converged(direction, channel)),
+        "albedo_reference": float(reference.mean()),
+        # Directions are independent of each other; channels share their paths.
+        "albedo_reference_stderr": float(((stderr**2).sum(axis=0) ** 0.5 / len(stderr)).mean()),
+        "albedo_model": float(model.mean()),
+        "albedo_error": float((model - reference).mean()),
+        "worst_theta_deg": float(result.theta_deg[m]),
+        "worst_channel": result.channels[c],
+        "worst_row": int(measures.worst_row[m, c]),
+        "worst_column": int(measures.worst_column[m, c]),
+        "worst_difference": float(measures.worst_difference[m, c]),
+        "worst_stderr": float(measures.worst_stderr[m, c]),
+        "subcells": comparison.subcells,
+        "model_seconds": found.seconds,
+        "simulation_seconds": comparison.simulation_seconds,
+        "rays": float(result.rays.mean()),
+        "note": None,
+    }
+
+
+def _worst(measures, direction, channel):
+    """Direction and channel whose worst cell is shown: that of the largest debiased error."""
+    debiased = measures.squared - measures.noise
+    ms = range(len(debiased)) if direction is None else [direction]
+    cs = range(debiased.shape[1]) if channel is None else [channel]
+    return max(((m, c) for m in ms for c in cs), key=lambda place: debiased[place])
