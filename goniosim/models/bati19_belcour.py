@@ -8,9 +8,17 @@ import numpy as np
 from .._jit import kernel
 from ..optics.fresnel import fresnel_conductor, fresnel_dielectric
 from ..scene import distinct_channels
-from .belcour_lobes import Options, evaluate as evaluate_lobes, prepare_forward, supports_conductor_base
+from .belcour_lobes import Options, prepare_forward, supports_conductor_base
+from .belcour_lobes import evaluate as evaluate_lobes
 from .model import Model, Prepared
-from .stack import DIELECTRIC, add_lobe, ggx_lobe, kernel_alphas, light_direction, make_stack
+from .stack import (
+    DIELECTRIC,
+    add_lobe,
+    ggx_lobe,
+    kernel_alphas,
+    light_direction,
+    make_stack,
+)
 
 
 @kernel

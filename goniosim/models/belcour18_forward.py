@@ -11,7 +11,13 @@ import math
 import numpy as np
 
 from .albedo import WHITE, directional_albedo
-from .belcour_lobes import Options, prepare_forward, prepare_lobes, statistics, supports_conductor_base
+from .belcour_lobes import (
+    Options,
+    prepare_forward,
+    prepare_lobes,
+    statistics,
+    supports_conductor_base,
+)
 from .model import Model
 from .stack import light_direction
 

@@ -15,7 +15,13 @@ from .._jit import kernel
 from ..optics.microfacet import microfacet_reflection
 from ..scene import distinct_channels
 from .belcour import sweep
-from .belcour_lobes import NARROWEST, Options, belcour_tables, lobes_of, supports_conductor_base
+from .belcour_lobes import (
+    NARROWEST,
+    Options,
+    belcour_tables,
+    lobes_of,
+    supports_conductor_base,
+)
 from .model import Model, Prepared
 from .stack import ggx_lobe, light_direction
 

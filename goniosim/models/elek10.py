@@ -15,7 +15,12 @@ from ..optics.masking import height_correlation
 from ..optics.medium import path_length
 from ..optics.refraction import refracted_cosine
 from .model import Model
-from .options import conductor_index_option, masking_option, t_masking_option, t_roughness_option
+from .options import (
+    conductor_index_option,
+    masking_option,
+    t_masking_option,
+    t_roughness_option,
+)
 from .stack import add_lobe, ggx_lobe
 from .weidlich_wilkie import BELOW, FACE, descend, prepare, running_ratios, supports
 
