@@ -73,7 +73,7 @@ def test_smooth_stacks_have_their_exact_energies(theta, tau, fgd):
     ("name", "at_0", "at_60"), [("ww09", 0.873, 0.755), ("elek10", 1.623, 1.080), ("bati19_ww", 0.708, 0.456)]
 )
 def test_energy_of_a_lossless_rough_base(name, at_0, at_60):
-    """Documented breaches of energy conservation, to the digits known; printed as in a.2 of the derivation."""
+    """Documented breaches of energy conservation, to the digits known."""
     scene = make_scene([dielectric(1.5, 0.05), MIRROR], 0)
     found = [albedo(name, scene, theta, "reflection/internal") for theta in (0, 60)]
     assert found == pytest.approx([at_0, at_60], abs=1e-3)
@@ -154,7 +154,7 @@ def test_eq_6_keeps_the_internal_lobes_of_forward():
 
 
 def test_first_symmetric_lobe_is_exact_with_plain_fresnel():
-    """e_0 = F(l.h) and D G about n: with plain Fresnel the first lobe is f_r0; what is left is the table's."""
+    """e_0 = F(l.h) and D G about n: with plain Fresnel the first lobe is f_r0; the rest is the table."""
     scene = make_scene([dielectric(1.5, 0.2), conductor(1.45, 1.0, 0.05)], 0)
     angles = (60.0, np.linspace(0.0, 89.0, 30), 150.0)
     symmetric = evaluate_model("belcour18_symmetric", scene, *angles, "reflection/direct", {"fgd": "fresnel"})
