@@ -38,7 +38,7 @@ def _tabulate(kinds, alphas, etas, spectral, taus, flags, table):
     last = table.shape[0] - 1
     for node in range(table.shape[0]):
         t = node / last
-        # At exactly grazing incidence the statistics have no limit of their own to offer.
+        # The sweep divides by the cosine.
         cosine = max(t * t, 1e-7)
         sweep(kinds, alphas, etas, spectral, taus, cosine, flags, energy, alpha, total)
         for k in range(kinds.shape[0]):
