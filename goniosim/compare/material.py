@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..models import MODELS, prepare
+from ..result import Component
 from ..scene import parse_scene
 from .grid import make_grid
 from .integrate import integrate, to_slice
@@ -33,12 +34,15 @@ class Slices:
         The same from finer sub-cells, and integrated adaptively.
     seconds : float
         Time of ``energy`` per slice: preparation, evaluation and integration.
+    contains_delta : bool
+        Whether some energy leaves in exactly the mirror direction.
     """
 
     energy: np.ndarray
     finer: np.ndarray
     converged: np.ndarray
     seconds: float
+    contains_delta: bool
 
 
 @dataclass(frozen=True)
@@ -84,9 +88,8 @@ class MaterialComparison:
     components : tuple of str
         Main component first.
     compared : list of Compared
-    slices : dict of (str, str) to ndarray, shape (M, C, R, K)
-        Energies by label of the variant and component (``reflection`` only where a model does not
-        split it).
+    slices : dict of (str, str) to goniosim.result.Component
+        By label of the variant and component, ``reflection`` only where a model does not split it.
     """
 
     result: object
@@ -106,14 +109,8 @@ class MaterialComparison:
 
     def bsdf(self, label, component):
         """Slices of a variant in 1/sr, shape (M, C, R, K); direct and internal paths are added up."""
-        return to_bsdf(self.energy(label, component), self.result.cells)
-
-    def energy(self, label, component):
-        """Energies of a variant, shape (M, C, R, K); direct and internal paths are added up."""
-        if (label, component) in self.slices:
-            return self.slices[label, component]
         parts = (part for part in self.slices if part[0] == label and part[1].startswith(component))
-        return sum(self.slices[part] for part in parts)
+        return sum(self.slices[part].bsdf for part in parts)
 
     def reference(self, component):
         """Slices of the simulation and their standard errors in 1/sr, each of shape (M, C, R, K)."""
@@ -151,7 +148,8 @@ def compare_material(result, request, subcells, pool, progress=None):
                     parts[part] = _integrated(scene, variant, part, grids, subcells, pool)
             own = [parts[part] for part in _parts(scene, variant.model, component)]
             compared.append(_compared(result, variant, component, own))
-        slices |= {(variant.label, part): found.energy for part, found in parts.items()}
+        for part, found in parts.items():
+            slices[variant.label, part] = _component(found, result.cells)
         if progress is not None:
             progress(done + 1, len(variants))
     return MaterialComparison(
@@ -190,17 +188,26 @@ def _integrated(scene, variant, component, grids, subcells, pool):
     # Compiled code is loaded before the clock starts.
     first = prepare(variant.model, scene, grids[0].theta_deg, component, options)
     integrate(first, grids[0], 1, pool, grids[0].numbers[:1])
-    seconds = 0.0
+    seconds, contains_delta = 0.0, False
     for grid in grids:
         started = time.perf_counter()
         prepared = prepare(variant.model, scene, grid.theta_deg, component, options)
         coarse, spread = integrate(prepared, grid, subcells, pool)
         seconds += time.perf_counter() - started
+        contains_delta |= bool(np.any(prepared.mirror_energy))
         fine, suspects = finer(prepared, grid, FINER * subcells, pool, coarse, spread)
         limit = refine(prepared, grid, narrowest, pool, fine, suspects)
         for found, energy in zip(levels.values(), (coarse, fine, limit), strict=True):
             found.append(to_slice(prepared, grid, energy))
-    return Slices(**{name: np.stack(found) for name, found in levels.items()}, seconds=seconds / len(grids))
+    stacked = {name: np.stack(found) for name, found in levels.items()}
+    return Slices(**stacked, seconds=seconds / len(grids), contains_delta=contains_delta)
+
+
+def _component(found, cells):
+    # A model has no noise; how far its integration is from converged stands in the table.
+    none = np.broadcast_to(0.0, found.energy.shape)
+    bsdf = to_bsdf(found.energy, cells)
+    return Component(found.energy, none, bsdf, none, contains_delta=found.contains_delta)
 
 
 def _compared(result, variant, component, parts):

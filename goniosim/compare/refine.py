@@ -73,7 +73,8 @@ def refine(prepared, grid, narrowest, pool, energy, suspects):
     """
     module = PARAMETRIZATIONS[grid.parametrization][1]
     peak = _coordinates(grid, _mirror(prepared))
-    scale = 0.25 * module.lobe_scale(narrowest)
+    # The azimuth matters everywhere, on the scale of a radian.
+    scales = np.minimum(0.25 * np.array(module.lobe_scales(narrowest, math.radians(grid.theta_deg))), 0.5)
     size = grid.projected_solid_angle[:, : grid.half_columns].ravel()[grid.numbers]
     # Each cell may spend its share of the error; a difference of two rules overstates it.
     budget = TOLERANCE**2 * (energy**2 / size).sum(axis=1).max() / len(energy[0])
@@ -91,7 +92,7 @@ def refine(prepared, grid, narrowest, pool, energy, suspects):
         sums = values.reshape(len(values), -1, 4).sum(axis=2)
         error = np.abs(sums - whole).max(axis=0)
         settled = error**2 <= budget * size[cell]
-        settled &= ~_holds_peak(todo, peak, scale)
+        settled &= ~_holds_peak(todo, peak, scales)
         settled |= level == MAX_LEVELS - 1
         for total, value in zip(better, sums, strict=True):
             np.add.at(total, cell[settled], value[settled])
@@ -133,14 +134,14 @@ def _coordinates(grid, direction):
     return u, math.atan2(axis[1], axis[0]) % TWO_PI
 
 
-def _holds_peak(rectangles, peak, scale):
-    """Which rectangles lie at the peak of the lobes and are larger than ``scale``."""
+def _holds_peak(rectangles, peak, scales):
+    """Which rectangles lie at the peak of the lobes and are larger than ``scales`` in u or in phi."""
     u, phi, d_u, d_phi = rectangles.T
     peak_u, peak_phi = peak
     near = np.abs(u + 0.5 * d_u - peak_u) <= d_u
     # At the pole of the slice the peak lies at every azimuth.
     around = (np.abs(phi + 0.5 * d_phi - peak_phi) <= d_phi) | (peak_u <= d_u)
-    return near & around & (d_u > scale)
+    return near & around & ((d_u > scales[0]) | (d_phi > scales[1]))
 
 
 def _quarter(rectangles):
