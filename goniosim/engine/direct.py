@@ -18,9 +18,13 @@ from ..slices import PARAMETRIZATIONS, cells_of, view_direction
 from ..slices.grid import HALF_PI
 from .stages import LAMBERT, ROUGH_CONDUCTOR, ROUGH_DIELECTRIC, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 
+# Accuracy of a cell, and the energy below which it does not matter.
 RELATIVE_TOLERANCE = 1e-8
 ABSOLUTE_TOLERANCE = 1e-14
+# A first look at a cell, which tells what its accuracy is relative to.
+ROUGH_TOLERANCE = 1e-2
 MAX_DEPTH = 40
+MAX_PARTS = 20_000
 
 _x, _w = np.polynomial.legendre.leggauss(5)
 _NODES = 0.5 * (1.0 + _x)
@@ -54,8 +58,11 @@ def direct_reflection(plan, direction):
             energy[c].flat[mirror_cell(plan, direction)] = _fresnel(kind, eta, spectral[:, c], light[2])
         return energy, np.zeros(shape)
     module = PARAMETRIZATIONS[plan.parametrization_name][1]
-    peak = module.mirror_coordinate(math.acos(min(1.0, light[2])))
-    scale = 0.25 * module.lobe_scale(alpha)
+    theta = math.radians(plan.theta_deg[direction])
+    peak = module.mirror_coordinate(theta)
+    scale_u, scale_phi = module.lobe_scales(alpha, theta)
+    # The azimuth matters everywhere, on the scale of a radian.
+    scales = np.array([0.25 * scale_u, min(0.25 * scale_phi, 0.5)])
     energy = np.zeros(shape)
     error = np.zeros(shape)
     # The index of a dielectric is the same in all channels.
@@ -63,7 +70,7 @@ def direct_reflection(plan, direction):
     for c in range(computed):
         for row in range(plan.rows):  # one call would keep Ctrl-C waiting on fine slices
             _integrate_row(
-                kind, alpha, eta, spectral[:, c], plan.parametrization, light, peak, scale, row, energy[c], error[c]
+                kind, alpha, eta, spectral[:, c], plan.parametrization, light, peak, scales, row, energy[c], error[c]
             )
     energy[computed:] = energy[0]
     error[computed:] = error[0]
@@ -89,54 +96,70 @@ def _fresnel(kind, eta, spectral, cosine):
 
 
 @kernel
-def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, scale, row, energy, error):
+def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, scales, row, energy, error):
     rows, columns = energy.shape
     d_u = HALF_PI / rows
     d_phi = TWO_PI / columns
     todo = np.empty((4 * MAX_DEPTH + 4, 6))
     # Light stands at azimuth 0: the slice is its own mirror image.
     for column in range((columns + 1) // 2):
-        value, accuracy = _integrate_cell(
-            kind, alpha, eta, spectral, parametrization, light, peak, scale, row * d_u, column * d_phi, d_u, d_phi, todo
-        )
+        u = row * d_u
+        phi = column * d_phi
+        relative = ROUGH_TOLERANCE
+        absolute = ABSOLUTE_TOLERANCE
+        for _ in range(2):
+            value, accuracy = _integrate_cell(
+                kind, alpha, eta, spectral, parametrization, light, peak, scales, u, phi, d_u, d_phi, relative, absolute, todo
+            )
+            if accuracy <= RELATIVE_TOLERANCE * value + ABSOLUTE_TOLERANCE:
+                break
+            # Relative to the cell and not to its parts: for very narrow lobes at grazing angles the
+            # rounding of the half vector keeps a part from ever reaching a relative accuracy.
+            relative = 0.0
+            absolute = 0.1 * RELATIVE_TOLERANCE * value + ABSOLUTE_TOLERANCE
         for j in (column, columns - 1 - column):
             energy[row, j] = value
             error[row, j] = accuracy
 
 
 @kernel
-def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, scale, u, phi, d_u, d_phi, todo):
+def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, scales, u, phi, d_u, d_phi, relative, absolute, todo):
     """Integral and error estimate over one cell; ``todo`` is a stack of (u, phi, widths, rule, depth)."""
     whole = _rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi)
     todo[0] = (u, phi, d_u, d_phi, whole, 0.0)
     n = 1
     total = 0.0
     error = 0.0
+    visited = 0
     while n > 0:
         n -= 1
+        visited += 1
         u, phi, d_u, d_phi, whole, depth = todo[n]
-        half_u = 0.5 * d_u
-        # Next to the pole of the slice a cell is a thin wedge: halve its length only.
-        slices_of_phi = 1 if (u + d_u) * d_phi < half_u else 2
-        part_phi = d_phi / slices_of_phi
+        # In units of the lobe's widths; a part much longer than wide is cut across only.
+        long_u = d_u / scales[0]
+        long_phi = d_phi / scales[1]
+        n_u = 1 if long_phi > 4.0 * long_u else 2
+        n_phi = 1 if long_u > 4.0 * long_phi else 2
+        part_u = d_u / n_u
+        part_phi = d_phi / n_phi
         parts = 0.0
-        for i in range(2):
-            for j in range(slices_of_phi):
-                part_u = u + i * half_u
+        for i in range(n_u):
+            for j in range(n_phi):
+                start_u = u + i * part_u
                 start_phi = phi + j * part_phi
-                value = _rule(kind, alpha, eta, spectral, parametrization, light, part_u, start_phi, half_u, part_phi)
-                todo[n + slices_of_phi * i + j] = (part_u, start_phi, half_u, part_phi, value, depth + 1)
+                value = _rule(kind, alpha, eta, spectral, parametrization, light, start_u, start_phi, part_u, part_phi)
+                todo[n + n_phi * i + j] = (start_u, start_phi, part_u, part_phi, value, depth + 1)
                 parts += value
         difference = abs(parts - whole)
         # At the pole the lobe lies at every azimuth.
-        near = (abs(u + half_u - peak) <= d_u) & ((abs(phi + 0.5 * d_phi - math.pi) <= d_phi) | (peak <= d_u))
-        holds_peak = near & (d_u > scale)
-        settled = difference <= RELATIVE_TOLERANCE * parts + ABSOLUTE_TOLERANCE
-        if (settled & (not holds_peak)) | (depth >= MAX_DEPTH):
+        near = (abs(u + 0.5 * d_u - peak) <= d_u) & ((abs(phi + 0.5 * d_phi - math.pi) <= d_phi) | (peak <= d_u))
+        holds_peak = near & (max(long_u, long_phi) > 1.0)
+        settled = (difference <= relative * parts + absolute) & (not holds_peak)
+        if settled | (depth >= MAX_DEPTH) | (visited >= MAX_PARTS):
             total += parts
             error += difference
         else:
-            n += 2 * slices_of_phi
+            n += n_u * n_phi
     return total, error
 
 

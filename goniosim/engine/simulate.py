@@ -1,6 +1,5 @@
 """The driver: work units on threads, their tallies summed in a fixed order, results assembled."""
 
-import os
 import platform
 import threading
 import time
@@ -18,6 +17,7 @@ from . import estimate
 from .direct import direct_reflection
 from .layout import DOWN, UP
 from .plan import make_plan
+from .probe import available_cores, warm_up
 from .schedule import Schedule
 from .unit import Tally, Workspace, unit_key
 
@@ -57,7 +57,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     threads = scene.simulation.threads or available_cores()
     plan = make_plan(scene)
     run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)
-    run.warm_up()
+    warm_up(plan)
     stop = stop or threading.Event()
     direct = _integrate_direct(plan, threads, stop)
     run.trace(progress or (lambda done, total: None), stop)
@@ -93,56 +93,6 @@ def _integrate_direct(plan, threads, stop):
         return list(pool.map(integrate, range(len(plan.theta_deg))))
 
 
-def available_cores():
-    """Cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def warm_up(scene):
-    """Compile the kernels, or load them from the cache; returns the seconds it took."""
-    plan = make_plan(scene)
-    return _Run(plan, 1, 0, 1).warm_up()
-
-
-@dataclass(frozen=True)
-class Probe:
-    """What a short trial run says about a scene.
-
-    Attributes
-    ----------
-    rays_per_second : float
-        Over all threads.
-    events_per_ray : float
-        Mean number of interfaces a ray meets.
-    compile_seconds : float
-        Time to compile the kernels or to load them from the cache.
-    """
-
-    rays_per_second: float
-    events_per_ray: float
-    compile_seconds: float
-
-
-def probe(scene, seconds=1.0, threads=None):
-    """Trace the scene for about ``seconds`` and measure; see `Probe`."""
-    plan = make_plan(scene)
-    threads = threads or scene.simulation.threads or available_cores()
-    compile_seconds = _Run(plan, 1, 0, 1).warm_up()
-    stop = threading.Event()
-    rays = 1 << 16
-    while True:
-        run = _Run(plan, rays, scene.simulation.seed, threads)
-        start = time.perf_counter()
-        run.trace(lambda done, total: None, stop)
-        elapsed = time.perf_counter() - start
-        if elapsed > 0.5 * seconds:
-            total = sum(run.rays)
-            return Probe(total / elapsed, run.events / total, compile_seconds)
-        rays = int(rays * min(16.0, max(2.0, 0.8 * seconds / elapsed)))
-
-
 @dataclass
 class _Run:
     plan: object
@@ -169,11 +119,6 @@ class _Run:
     @property
     def finished(self):
         return all(len(parts) == self.schedule.rounds for parts in self.ledgers)
-
-    def warm_up(self):
-        start = time.perf_counter()
-        Workspace(self.plan).run(0, 1, unit_key(0, 0, 0), Tally(self.plan), threading.Event())
-        return time.perf_counter() - start
 
     def trace(self, progress, stop):
         """Run all work units, summing their tallies in the order of the schedule."""

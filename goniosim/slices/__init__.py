@@ -13,6 +13,7 @@ parametrization (theta_v = 0 or theta_h = 0) belongs to row 0 and column 0.
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -57,7 +58,14 @@ class Geometry:
     projected_solid_angle: np.ndarray
 
 
+@lru_cache(maxsize=128)
 def slice_geometry(parametrization, rows, columns, theta_deg):
-    """Cells of the slice for light at ``theta_deg``; ``parametrization`` by name."""
+    """Cells of the slice for light at ``theta_deg``; ``parametrization`` by name.
+
+    Kept for the next scene of a study: the arrays cannot be written to.
+    """
     module = PARAMETRIZATIONS[parametrization][1]
-    return Geometry(*module.geometry(rows, columns, math.radians(theta_deg)))
+    arrays = module.geometry(rows, columns, math.radians(theta_deg))
+    for array in arrays:
+        array.setflags(write=False)
+    return Geometry(*arrays)

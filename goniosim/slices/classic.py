@@ -29,9 +29,13 @@ def mirror_coordinate(theta):
     return theta
 
 
-def lobe_scale(alpha):
-    """Width in the row coordinate of the reflection of a GGX lobe of width ``alpha``."""
-    return alpha
+def lobe_scales(alpha, theta):
+    """Widths in row coordinate and azimuth of the reflection of a GGX lobe of width ``alpha``.
+
+    A half vector tilted by alpha out of the plane of incidence turns the azimuth of v by
+    2 alpha cot(theta): at grazing incidence the lobe is a needle.
+    """
+    return alpha, 2.0 * alpha / max(math.tan(theta), 1e-12)
 
 
 def geometry(rows, columns, theta):

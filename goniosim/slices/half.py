@@ -55,9 +55,9 @@ def mirror_coordinate(theta):
     return 0.0
 
 
-def lobe_scale(alpha):
-    """Width in the row coordinate of the reflection of a GGX lobe of width ``alpha``."""
-    return math.sqrt(alpha * HALF_PI)
+def lobe_scales(alpha, theta):
+    """Widths in row coordinate and azimuth of the reflection of a GGX lobe of width ``alpha``."""
+    return math.sqrt(alpha * HALF_PI), math.pi
 
 
 def geometry(rows, columns, theta):
