@@ -152,7 +152,8 @@ def reciprocity_rows(rays):
         ("slab", slab, "transmission"),
     ):
         z = checks.exchange_deviations(layers, part, thetas, rays, 5)
-        yield name, part, z.size, f"{(z**2).mean():.3f} ± {math.sqrt(2 / z.size):.3f}", f"{np.abs(z).max():.1f}"
+        mean_square = f"{(z**2).mean():.3f} ± {math.sqrt(2 / z.size):.3f}"
+        yield name, part, z.size, mean_square, f"{np.abs(z).max():.1f}"
 
 
 def tracer_rows(rays, tracer_rays):
@@ -161,7 +162,7 @@ def tracer_rows(rays, tracer_rays):
         dielectric(1.7, 0.05),
     ]  # fmt: skip
     for name, base in (
-        ("over a conductor", conductor([1.2, 1.45, 1.9], [1.0, 0.01, 2.0], 0.3)),
+        ("over a conductor", conductor([1.2, 1.45, 1.9], [1.0, 0.5, 2.0], 0.3)),
         ("in air", dielectric(1.0, 0.3)),
     ):
         for slices in SLICES:

@@ -10,12 +10,11 @@ import math
 import numpy as np
 
 RELATIVE_TOLERANCE = 1e-7
-ABSOLUTE_TOLERANCE = 1e-12
 MAX_HALVINGS = 40
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
-def integrate_cells(density, theta_deg, rows=90, columns=360, parametrization="classic"):
+def integrate_cells(density, theta_deg, rows=90, columns=360, parametrization="classic", absolute=1e-12):
     """Energy that leaves into each cell of a reflection slice.
 
     Parameters
@@ -27,44 +26,60 @@ def integrate_cells(density, theta_deg, rows=90, columns=360, parametrization="c
     rows, columns : int
     parametrization : str
         ``classic`` or ``half``.
+    absolute : float
+        Error allowed in a cell where `RELATIVE_TOLERANCE` asks for less.
 
     Returns
     -------
     ndarray, shape (rows, columns)
     """
     theta_l = math.radians(theta_deg)
-    integrand = _classic_integrand if parametrization == "classic" else _half_integrand
     # Both row coordinates run from 0 to pi/2; only one side of the plane of incidence is integrated.
     one_side = (columns + 1) // 2
     row_edge = np.linspace(0.0, 0.5 * math.pi, rows + 1)
     column_edge = np.linspace(0.0, 2.0 * math.pi, columns + 1)[: one_side + 1]
-    a0, b0 = np.meshgrid(row_edge[:-1], column_edge[:-1], indexing="ij")
-    a1, b1 = np.meshgrid(row_edge[1:], column_edge[1:], indexing="ij")
-    boxes = np.stack([a0.ravel(), a1.ravel(), b0.ravel(), b1.ravel()])
-    cells = _adaptive(lambda box: integrand(density, theta_l, box), boxes).reshape(rows, one_side)
+    bottom, left = (grid.ravel() for grid in np.meshgrid(row_edge[:-1], column_edge[:-1], indexing="ij"))
+    top, right = (grid.ravel() for grid in np.meshgrid(row_edge[1:], column_edge[1:], indexing="ij"))
+    if parametrization == "classic":
+        cuts = np.array([left, right])
+        integrand = _classic_integrand
+    else:
+        horizon = [_azimuth_of_horizon(edge, theta_l) for edge in (bottom, top)]
+        around = [left, *horizon, *(2.0 * math.pi - edge for edge in horizon), right]
+        cuts = np.sort(np.clip(around, left, right), axis=0)
+        integrand = _half_integrand
+
+    def rule(boxes, cell):
+        return _gauss_legendre(integrand, density, theta_l, boxes, bottom[cell], top[cell])
+
+    # A box is (lower and upper height in the cell, from 0 to 1; lower and upper azimuth).
+    starts, ends = cuts[:-1], cuts[1:]
+    cell = np.broadcast_to(np.arange(len(left)), starts.shape)[starts < ends]
+    starts, ends = starts[starts < ends], ends[starts < ends]
+    boxes = np.array([np.zeros_like(starts), np.ones_like(starts), starts, ends])
+    cells = _adaptive(rule, boxes, cell, len(left), absolute).reshape(rows, one_side)
     return np.concatenate([cells, cells[:, : columns - one_side][:, ::-1]], axis=1)
 
 
-def _adaptive(rule, boxes):
-    """Halve every box in both coordinates until the parts agree with the whole."""
-    total = np.zeros(boxes.shape[1])
-    owner = np.arange(boxes.shape[1])
-    whole = rule(boxes)
+def _adaptive(rule, boxes, cell, n_cells, absolute):
+    """Quarter every box until its parts agree with the whole; sum over the boxes of each cell."""
+    total = np.zeros(n_cells)
+    whole = rule(boxes, cell)
     for _ in range(MAX_HALVINGS):
-        parts = _quarter(boxes)
-        values = rule(parts.reshape(4, -1)).reshape(4, -1)
+        parts = _quarters(boxes)
+        values = rule(parts.reshape(4, -1), np.tile(cell, 4)).reshape(4, -1)
         better = values.sum(axis=0)
-        done = np.abs(better - whole) <= np.maximum(ABSOLUTE_TOLERANCE, RELATIVE_TOLERANCE * better)
-        np.add.at(total, owner[done], better[done])
+        done = np.abs(better - whole) <= np.maximum(absolute, RELATIVE_TOLERANCE * better)
+        np.add.at(total, cell[done], better[done])
         if done.all():
             return total
         boxes = parts[:, :, ~done].reshape(4, -1)
         whole = values[:, ~done].ravel()
-        owner = np.tile(owner[~done], 4)
+        cell = np.tile(cell[~done], 4)
     raise ArithmeticError("the cell integrals do not converge")
 
 
-def _quarter(boxes):
+def _quarters(boxes):
     """Four quarters of every box, shape (4 edges, 4 quarters, boxes)."""
     a0, a1, b0, b1 = boxes
     a, b = 0.5 * (a0 + a1), 0.5 * (b0 + b1)
@@ -72,39 +87,46 @@ def _quarter(boxes):
     return np.array(quarters).transpose(1, 0, 2)
 
 
-def _classic_integrand(density, theta_l, boxes):
-    """Gauss-Legendre over (theta_v, phi_v): solid angle sin(theta_v) dtheta dphi."""
+def _gauss_legendre(integrand, density, theta_l, boxes, bottom, top):
+    """Product rule on boxes within cells that reach from `bottom` to `top` in the row coordinate."""
     a0, a1, b0, b1 = (edge[:, None, None] for edge in boxes)
-    theta = 0.5 * (a0 + a1) + 0.5 * (a1 - a0) * _NODES[:, None]
+    height = 0.5 * (a0 + a1) + 0.5 * (a1 - a0) * _NODES[:, None]
     phi = 0.5 * (b0 + b1) + 0.5 * (b1 - b0) * _NODES[None, :]
+    value = integrand(density, theta_l, height, phi, bottom[:, None, None], top[:, None, None])
+    area = 0.25 * (boxes[1] - boxes[0]) * (boxes[3] - boxes[2])
+    return area * np.einsum("nij,i,j->n", value, _WEIGHTS, _WEIGHTS)
+
+
+def _classic_integrand(density, theta_l, height, phi, bottom, top):
+    """Solid angle sin(theta_v) dtheta_v dphi_v."""
+    theta = bottom + height * (top - bottom)
     sin_v = np.sin(theta)
-    value = density(
-        math.sin(theta_l), math.cos(theta_l), sin_v * np.cos(phi), sin_v * np.sin(phi), np.cos(theta)
-    )
-    value = value * sin_v
-    weight = 0.25 * (boxes[1] - boxes[0]) * (boxes[3] - boxes[2])
-    return weight * np.einsum("nij,i,j->n", value, _WEIGHTS, _WEIGHTS)
+    x, y = sin_v * np.cos(phi), sin_v * np.sin(phi)
+    return density(math.sin(theta_l), math.cos(theta_l), x, y, np.cos(theta)) * sin_v * (top - bottom)
 
 
-def _half_integrand(density, theta_l, boxes):
-    """Gauss-Legendre over (u, phi_h): solid angle of v is 4 l.h sin(theta_h) dtheta_h dphi_h.
+def _half_integrand(density, theta_l, height, phi, bottom, top):
+    """Solid angle of v is 4 l.h sin(theta_h) dtheta_h dphi_h.
 
-    v rises above the horizon where theta_h < pi/4 + atan(tan(theta_l) cos(phi_h)) / 2, so the
-    inner integral stops there and stays smooth.
+    v is above the horizon where theta_h < pi/4 + atan(tan(theta_l) cos(phi_h)) / 2. There the
+    cell ends: its height, from 0 to 1, covers only what is above, so that no kink is left.
     """
-    a0, a1, b0, b1 = (edge[:, None, None] for edge in boxes)
-    phi = 0.5 * (b0 + b1) + 0.5 * (b1 - b0) * _NODES[None, :]
     sin_l, cos_l = math.sin(theta_l), math.cos(theta_l)
     horizon = 0.25 * math.pi + 0.5 * np.arctan2(sin_l * np.cos(phi), cos_l)
-    top = np.minimum(a1, np.sqrt(horizon * (0.5 * math.pi)))
-    width = np.maximum(top - a0, 0.0)
-    u = a0 + 0.5 * width * (1.0 + _NODES[:, None])
+    tall = np.maximum(np.minimum(top, np.sqrt(horizon * (0.5 * math.pi))) - bottom, 0.0)
+    u = bottom + height * tall
     theta_h = u * u * (2.0 / math.pi)
     sin_h, cos_h = np.sin(theta_h), np.cos(theta_h)
     cos_d = sin_l * sin_h * np.cos(phi) + cos_l * cos_h
     x = 2.0 * cos_d * sin_h * np.cos(phi) - sin_l
     y = 2.0 * cos_d * sin_h * np.sin(phi)
     z = np.maximum(2.0 * cos_d * cos_h - cos_l, 0.0)
-    jacobian = 4.0 * cos_d * sin_h * u * (4.0 / math.pi)
-    value = density(sin_l, cos_l, x, y, z) * jacobian * (0.5 * width)
-    return 0.5 * (boxes[3] - boxes[2]) * np.einsum("nij,i,j->n", value, _WEIGHTS, _WEIGHTS)
+    return density(sin_l, cos_l, x, y, z) * 4.0 * cos_d * sin_h * u * (4.0 / math.pi) * tall
+
+
+def _azimuth_of_horizon(u, theta_l):
+    """phi_h in [0, pi] up to which half vectors of row coordinate `u` belong to v above the horizon."""
+    theta_h = u * u * (2.0 / math.pi)
+    across = math.sin(theta_l) * np.sin(2.0 * theta_h)
+    along = -math.cos(theta_l) * np.cos(2.0 * theta_h)
+    return np.arccos(np.clip(along / np.maximum(across, 1e-300), -1.0, 1.0))

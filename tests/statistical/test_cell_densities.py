@@ -1,0 +1,55 @@
+"""Every cell of a slice against the integrated density: sampled and integrated light.
+
+Each chi-square is allowed 4 sigma on either side: a right engine fails one
+with probability 6.3e-5, and any of the about 90 here with less than 0.6 %.
+"""
+
+import numpy as np
+import pytest
+
+from reference import checks
+from reference.closed_forms import reflection_density
+from reference.scenes import conductor, dielectric
+
+THETAS = [0, 30, 60, 85, 89]
+ALPHAS = [0.001, 0.05, 0.2, 1.0]
+SLICES = ["classic", "half"]
+RAYS = 2_000_000
+
+
+def assert_within_four_sigma(chi_squares):
+    for found in chi_squares:
+        assert abs(found.sigmas) < 4, f"{chi_squares}"
+
+
+@pytest.mark.parametrize("parametrization", SLICES)
+def test_smooth_plastic(parametrization):
+    assert_within_four_sigma(checks.plastic_cells(THETAS, parametrization, RAYS, seed=11))
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("parametrization", SLICES)
+def test_rough_conductor(parametrization, alpha):
+    assert_within_four_sigma(checks.conductor_cells(alpha, THETAS, parametrization, RAYS, seed=12))
+
+
+@pytest.mark.parametrize("eta", [1.5, 1.0 / 1.5])
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_transmission_of_a_rough_interface(alpha, eta):
+    """Refraction into a half-space, from both sides of the interface."""
+    assert_within_four_sigma(checks.transmission_cells(alpha, eta, [0, 30, 60, 85], RAYS, seed=13))
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("parametrization", SLICES)
+@pytest.mark.parametrize(
+    "top, n", [(conductor(1.45, 1.0), 1.45 + 1.0j), (dielectric(1.5), 1.5)], ids=["conductor", "dielectric"]
+)
+def test_integrated_direct_reflection(top, n, parametrization, alpha):
+    """A quadrature, not a sample: its error bar must cover its error in every cell."""
+    top["interface"]["alpha"] = alpha
+    energy, stderr, exact = checks.direct_cells(
+        top, reflection_density(alpha, n), THETAS, parametrization, 45, 180
+    )
+    assert (np.abs(energy - exact) <= 3.0 * stderr + 3e-7 * exact + 1e-11).all()
+    np.testing.assert_allclose(energy.sum(axis=(1, 2)), exact.sum(axis=(1, 2)), rtol=1e-6)

@@ -1,0 +1,63 @@
+"""The error bars are honest: over many seeds they are as wide as the scatter."""
+
+import numpy as np
+import pytest
+
+from reference.cell_integrals import integrate_cells
+from reference.checks import ENOUGH_HITS, many_seeds
+from reference.closed_forms import plastic_density, reflection_density
+from reference.scenes import conductor, dielectric, lambert, medium
+
+SEEDS = 100
+RAYS = 300_000
+
+# Layers, incident angle, parametrization and exact flux density of the internal reflection.
+CASES = {
+    "plastic": (
+        [dielectric(1.5), medium(0.2), lambert(0.5)], 60, "classic", plastic_density(1.5, 0.5, 0.2)
+    ),
+    "metal": (
+        [dielectric(1.0), conductor(1.45, 1.0, 0.3)], 45, "half", reflection_density(0.3, 1.45 + 1.0j)
+    ),
+}  # fmt: skip
+SLAB = [dielectric(1.5, 0.2), medium([0.05, 0.1, 0.8]), dielectric(1.0, 0.1)]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_deviations_from_the_truth(case):
+    """Standardised deviations from the exact cell averages have mean 0 and standard deviation 1.
+
+    The error bar is averaged over the seeds, for that of a single run is
+    correlated with its deviation (a cell that by chance caught more paths has
+    a wider one). With more than 5e4 deviations, 2 % is more than 6 sigma of
+    their standard deviation; the mean is allowed 4 sigma: false alarm 6e-5.
+    """
+    layers, theta, parametrization, density = CASES[case]
+    energy, stderr, hits = many_seeds(layers, theta, "reflection/internal", parametrization, RAYS, SEEDS)
+    exact = integrate_cells(density, theta, *hits.shape[1:], parametrization)
+    counted = hits.mean(axis=0) >= ENOUGH_HITS
+    bar = np.sqrt((stderr[:, 0] ** 2).mean(axis=0))
+    z = (energy[:, 0] - exact)[:, counted] / bar[counted]
+    assert z.size > 50_000
+    assert np.std(z) == pytest.approx(1.0, abs=0.02)
+    # The cells of a run share its paths; the runs share nothing.
+    per_run = z.mean(axis=1)
+    assert abs(per_run.mean()) < 4.0 * per_run.std(ddof=1) / np.sqrt(SEEDS)
+
+
+@pytest.mark.parametrize("component", ["reflection/internal", "transmission"])
+def test_error_bars_of_single_runs(component):
+    """Each run's own error bar, in all channels, where no closed form exists.
+
+    Deviations are taken from the mean over the seeds, which shrinks them by
+    sqrt(1 - 1/100). The bar of a single run is correlated with its deviation:
+    n hits widen the distribution by about 7 / (8 n), 3 % at 30 hits and 1 to
+    2 % over all cells. With 1e4 deviations and more, 0.7 % is one sigma of the
+    standard deviation, so that 5 % is above 4.
+    """
+    energy, stderr, hits = many_seeds(SLAB, 30, component, "classic", RAYS, SEEDS, 18, 36)
+    counted = hits.mean(axis=0) >= ENOUGH_HITS
+    z = (energy - energy.mean(axis=0))[:, :, counted] / stderr[:, :, counted] / np.sqrt(1.0 - 1.0 / SEEDS)
+    assert z[:, 0].size > 10_000
+    for channel in range(3):
+        assert np.std(z[:, channel]) == pytest.approx(1.0, abs=0.05)
