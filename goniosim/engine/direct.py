@@ -14,7 +14,7 @@ from .._jit import kernel
 from ..optics.elementary import TWO_PI
 from ..optics.fresnel import fresnel_conductor, fresnel_dielectric
 from ..optics.microfacet import microfacet_reflection
-from ..slices import PARAMETRIZATIONS, cells_of, view_direction
+from ..slices import PARAMETRIZATIONS, cells_of, horizon_azimuth, horizon_coordinate, view_direction
 from ..slices.grid import HALF_PI
 from .stages import LAMBERT, ROUGH_CONDUCTOR, ROUGH_DIELECTRIC, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 
@@ -105,11 +105,14 @@ def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, sca
     for column in range((columns + 1) // 2):
         u = row * d_u
         phi = column * d_phi
+        # Of the middle one of an odd number of columns, one half.
+        copies = 2.0 if 2 * column + 1 == columns else 1.0
+        width = d_phi / copies
         relative = ROUGH_TOLERANCE
         absolute = ABSOLUTE_TOLERANCE
         for _ in range(2):
             value, accuracy = _integrate_cell(
-                kind, alpha, eta, spectral, parametrization, light, peak, scales, u, phi, d_u, d_phi, relative, absolute, todo
+                kind, alpha, eta, spectral, parametrization, light, peak, scales, u, phi, d_u, width, relative, absolute, todo
             )
             if accuracy <= RELATIVE_TOLERANCE * value + ABSOLUTE_TOLERANCE:
                 break
@@ -118,8 +121,8 @@ def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, sca
             relative = 0.0
             absolute = 0.1 * RELATIVE_TOLERANCE * value + ABSOLUTE_TOLERANCE
         for j in (column, columns - 1 - column):
-            energy[row, j] = value
-            error[row, j] = accuracy
+            energy[row, j] = copies * value
+            error[row, j] = copies * accuracy
 
 
 @kernel
@@ -135,11 +138,19 @@ def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, sc
         n -= 1
         visited += 1
         u, phi, d_u, d_phi, whole, depth = todo[n]
-        # In units of the lobe's widths; a part much longer than wide is cut across only.
+        # Halves of a part that is mostly hidden would agree with it without being any finer.
+        d_u = min(d_u, horizon_coordinate(parametrization, phi, light[0], light[2]) - u)
+        if d_u <= 0.0:
+            continue
+        # In units of the lobe's widths.
         long_u = d_u / scales[0]
         long_phi = d_phi / scales[1]
-        n_u = 1 if long_phi > 4.0 * long_u else 2
-        n_phi = 1 if long_u > 4.0 * long_phi else 2
+        # At the pole the lobe lies at every azimuth.
+        near = (abs(u + 0.5 * d_u - peak) <= d_u) & ((abs(phi + 0.5 * d_phi - math.pi) <= d_phi) | (peak <= d_u))
+        holds_peak = near & (max(long_u, long_phi) > 1.0)
+        # Across only, on the way to the peak; everywhere else the error must show in both directions.
+        n_u = 1 if holds_peak & (long_phi > 4.0 * long_u) else 2
+        n_phi = 1 if holds_peak & (long_u > 4.0 * long_phi) else 2
         part_u = d_u / n_u
         part_phi = d_phi / n_phi
         parts = 0.0
@@ -151,9 +162,6 @@ def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, sc
                 todo[n + n_phi * i + j] = (start_u, start_phi, part_u, part_phi, value, depth + 1)
                 parts += value
         difference = abs(parts - whole)
-        # At the pole the lobe lies at every azimuth.
-        near = (abs(u + 0.5 * d_u - peak) <= d_u) & ((abs(phi + 0.5 * d_phi - math.pi) <= d_phi) | (peak <= d_u))
-        holds_peak = near & (max(long_u, long_phi) > 1.0)
         settled = (difference <= relative * parts + absolute) & (not holds_peak)
         if settled | (depth >= MAX_DEPTH) | (visited >= MAX_PARTS):
             total += parts
@@ -165,17 +173,37 @@ def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, sc
 
 @kernel
 def _rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi):
-    """Gauss-Legendre rule on one rectangle of the slice."""
+    """Gauss-Legendre rules on one rectangle of the slice, cut where the horizon leaves it.
+
+    Rows below the first of the two cuts are wholly visible, those above the second not at all.
+    """
+    first = min(max(horizon_coordinate(parametrization, phi + d_phi, light[0], light[2]) - u, 0.0), d_u)
+    second = min(max(horizon_coordinate(parametrization, phi, light[0], light[2]) - u, 0.0), d_u)
+    total = 0.0
+    if first > 0.0:
+        total += _smooth_rule(kind, alpha, eta, spectral, parametrization, light, u, phi, first, d_phi)
+    if second > first:
+        total += _smooth_rule(
+            kind, alpha, eta, spectral, parametrization, light, u + first, phi, second - first, d_phi
+        )
+    return total
+
+
+@kernel
+def _smooth_rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi):
     lx = light[0]
     ly = light[1]
     lz = light[2]
     total = 0.0
     for i in range(_NODES.shape[0]):
+        at = u + d_u * _NODES[i]
+        # Only the azimuths above the horizon, which would be a kink in the integrand.
+        width = min(d_phi, horizon_azimuth(parametrization, at, lx, lz) - phi)
+        if width <= 0.0:
+            continue
         for j in range(_NODES.shape[0]):
-            vx, vy, vz, jacobian = view_direction(
-                parametrization, u + d_u * _NODES[i], phi + d_phi * _NODES[j], lx, ly, lz
-            )
+            vx, vy, vz, jacobian = view_direction(parametrization, at, phi + width * _NODES[j], lx, ly, lz)
             lobe, cosine = microfacet_reflection(lx, ly, lz, vx, vy, vz, alpha)
             value = lobe * _fresnel(kind, eta, spectral, cosine) * max(0.0, vz) * jacobian
-            total += _WEIGHTS[i] * _WEIGHTS[j] * value
-    return total * d_u * d_phi
+            total += _WEIGHTS[i] * _WEIGHTS[j] * value * width
+    return total * d_u

@@ -19,6 +19,7 @@ import numpy as np
 
 from .._jit import kernel, scalar
 from . import classic, half
+from .grid import HALF_PI
 
 CLASSIC, HALF = range(2)
 PARAMETRIZATIONS = {"classic": (CLASSIC, classic), "half": (HALF, half)}
@@ -39,6 +40,22 @@ def view_direction(parametrization, u, phi, lx, ly, lz):
     if parametrization == CLASSIC:
         return classic.view_direction(u, phi, lx, ly, lz)
     return half.view_direction(u, phi, lx, ly, lz)
+
+
+@scalar
+def horizon_azimuth(parametrization, u, lx, lz):
+    """Azimuth below which, in [0, pi], the points of row coordinate ``u`` lie above the horizon."""
+    if parametrization == CLASSIC:
+        return math.pi
+    return half.horizon_azimuth(u, lx, lz)
+
+
+@scalar
+def horizon_coordinate(parametrization, phi, lx, lz):
+    """Row coordinate up to which the points of azimuth ``phi`` lie above the horizon."""
+    if parametrization == CLASSIC:
+        return HALF_PI
+    return half.horizon_coordinate(phi, lx, lz)
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,21 @@ def view_direction(u, phi, lx, ly, lz):
     return 2.0 * cosine * hx - lx, 2.0 * cosine * hy - ly, 2.0 * cosine * hz - lz, jacobian
 
 
+@scalar
+def horizon_azimuth(u, lx, lz):
+    """Azimuth phi_0 in [0, pi]: points of row coordinate ``u`` with phi_h < phi_0 lie above the horizon."""
+    theta = u * u / HALF_PI
+    a = lx * math.sin(2.0 * theta)
+    b = lz * math.cos(2.0 * theta)
+    return math.acos(max(-1.0, -b / a)) if a > abs(b) else (math.pi if b > 0.0 else 0.0)
+
+
+@scalar
+def horizon_coordinate(phi, lx, lz):
+    """Row coordinate up to which the points of azimuth ``phi`` lie above the horizon."""
+    return math.sqrt(0.5 * math.atan2(lz, -lx * math.cos(phi)) * HALF_PI)
+
+
 def mirror_coordinate(theta):
     """Row coordinate of the mirror direction: h = n whatever the light."""
     return 0.0
