@@ -3,7 +3,9 @@
 import click
 
 from .check import check
+from .compare import compare
 from .info import info
+from .models import models
 from .plot import plot
 from .policy import PolicyGroup, debug_option
 from .schema import schema
@@ -32,5 +34,5 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (simulate, check, info, plot, schema):
+for command in (simulate, check, info, plot, compare, models, schema):
     main.add_command(command)

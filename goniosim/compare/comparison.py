@@ -100,7 +100,7 @@ def compare(results, models=None, options=None, subcells=5, *, allow_partial=Fal
             result = each if isinstance(each, Result) else open_result(each)
             check_usable(result, allow_partial)
             if any(result.name == other.result.name for other in materials):
-                raise UnusableResultError(f"{result.name}: is the name of two results; rename one of the materials")
+                raise UnusableResultError(f"{result.name}: is the name of two results; rename one of them")
             materials.append(compare_material(result, request, subcells, pool))
     return Comparison(materials, [row for material in materials for row in material_rows(material)])
 
@@ -151,5 +151,5 @@ def result_files(path):
         return [path]
     files = sorted(path.glob("*.h5"))
     if not files:
-        raise UnusableResultError(f"{path}: holds no result files (*.h5); give the folder of a study's results")
+        raise UnusableResultError(f"{path}: holds no result files (*.h5); give a folder of results")
     return files

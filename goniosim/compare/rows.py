@@ -16,7 +16,8 @@ COLUMNS = {
     "below_noise": ("", "1: the error is not told from noise at two standard errors, and rmse means nothing"),
     "rmse_eq4": ("sr-0.5", "Eq. 4 as it stands, noise included"),
     "noise_floor": ("sr-0.5", "Eq. 4 of a perfect model: the noise of the reference"),
-    "rmse_relative": ("1", "rmse over the root of the integral of the squared reference; empty in the dark"),
+    "rmse_relative": ("1", "rmse over reference_norm; empty in the dark"),
+    "reference_norm": ("sr-0.5", "root of the integral of the squared reference: the scale of rmse_relative"),
     "rmse_finer": ("sr-0.5", "rmse with sub-cells three times as fine along each side"),
     "rmse_converged": ("sr-0.5", "rmse with adaptive integration of the model"),
     "converged": ("", "0: sub-cells change the RMSE by more than 2 %, see rmse_converged"),
@@ -74,7 +75,7 @@ def _row(comparison, found, direction, channel):
     reference = measures.albedo_reference[directions, channels]
     stderr = measures.albedo_stderr[directions, channels]
     model = measures.albedo_model[directions, channels]
-    norm = measures.norm[directions, channels].mean(axis=0) ** 0.5
+    norm = float((measures.norm[directions, channels].mean(axis=0) ** 0.5).mean())
     return {
         "material": result.name,
         "model": found.variant.model,
@@ -88,7 +89,8 @@ def _row(comparison, found, direction, channel):
         "below_noise": int(not error.significant),
         "rmse_eq4": error.raw,
         "noise_floor": error.noise_floor,
-        "rmse_relative": error.rmse / float(norm.mean()) if norm.mean() > 0.0 else None,
+        "rmse_relative": error.rmse / norm if norm > 0.0 else None,
+        "reference_norm": norm,
         "rmse_finer": rmse(found.finer, direction, channel).rmse,
         "rmse_converged": rmse(found.converged, direction, channel).rmse,
         "converged": int(found.is_converged(direction, channel)),

@@ -93,7 +93,7 @@ def variants_for(scene, request):
     for name, given in request.items():
         reason = MODELS[name].supports(scene, component)
         if reason is not None:
-            not_applicable[name] = f"{name} {reason}"
+            not_applicable[name] = reason
             continue
         known = {info.name for info in describe_options(name)}
         variants.append(_variant(name, given))

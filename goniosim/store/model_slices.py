@@ -1,6 +1,7 @@
 """The file of integrated models: for each material and model, groups as in the root of a result file."""
 
 import contextlib
+import hashlib
 import os
 import secrets
 from pathlib import Path
@@ -23,9 +24,7 @@ _KEPT_BITS = 24
 
 
 class ModelSlicesFile:
-    """Writes ``models.h5`` material by material; a context manager.
-
-    The file appears under its name only when everything is in it.
+    """Writes ``models.h5`` material by material; it appears under its name only when committed.
 
     Parameters
     ----------
@@ -45,25 +44,25 @@ class ModelSlicesFile:
         self._temporary = self._path.with_name(f".{self._path.name}.{secrets.token_hex(4)}.part")
         with self._explained():
             self._file = h5py.File(self._temporary, "w", libver=_FORMAT)
+        self._paths = {}
         _write_text(self._file, "filetype", FILETYPE)
         _write_text(self._file, "schema_version", MODELS_VERSION)
         for name, text in provenance.items():
             _write_text(self._file, name, text)
 
-    def __enter__(self):
-        return self
+    def commit(self):
+        """Put the finished file in place."""
+        with self._explained():
+            self._file.close()
+            with open(self._temporary, "rb") as stream:
+                os.fsync(stream.fileno())
+            os.replace(self._temporary, self._path)
 
-    def __exit__(self, kind, *_):
-        try:
-            with self._explained():
-                self._file.close()
-                if kind is None:
-                    with open(self._temporary, "rb") as stream:
-                        os.fsync(stream.fileno())
-                    os.replace(self._temporary, self._path)
-        finally:
-            with contextlib.suppress(OSError):
-                os.unlink(self._temporary)
+    def discard(self):
+        """Close and remove the file, unless it was committed."""
+        self._file.close()
+        with contextlib.suppress(OSError):
+            os.unlink(self._temporary)
 
     def add_material(self, result):
         """Make the group of a material with its cells and directions.
@@ -94,7 +93,7 @@ class ModelSlicesFile:
         slices : dict of str to goniosim.result.Component
             By name; ``reflection`` for one that holds both direct and internal paths. Values are
             stored with 24 significant bits: integration is not that accurate, and full mantissas
-            hardly compress.
+            hardly compress. Equal components of a material are stored once.
         """
         with self._explained():
             material = self._file[result.name]
@@ -103,6 +102,12 @@ class ModelSlicesFile:
                 _write_text(group, name, text)
             _link(material, group)
             for path, component in slices.items():
+                # Many models share their direct reflection.
+                digest = hashlib.sha256(result.name.encode() + component.energy.tobytes()).digest()
+                if digest in self._paths:
+                    group[path] = self._file[self._paths[digest]]
+                    continue
+                self._paths[digest] = f"{group.name}/{path}"
                 for name in ("energy", "stderr", "bsdf", "bsdf_stderr"):
                     # Components are described alike; `reflection` as such is none of a result's.
                     entry = describe(f"transmission/{name}")

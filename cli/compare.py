@@ -1,0 +1,80 @@
+"""`goniosim compare`: published models against simulated slices."""
+
+import contextlib
+from pathlib import Path
+
+import click
+
+from .policy import debug_option
+
+
+@click.command()
+@click.argument("results", metavar="RESULT_OR_FOLDER")
+@click.option("--models", metavar="NAMES", help="Models to compare, with commas between [default: all].")
+@click.option(
+    "-o",
+    "--output",
+    metavar="REPORT",
+    help="Folder of the report [default: NAME-comparison, after the input].",
+)
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="MODEL.OPTION=VALUE",
+    help="Choose an option of a model, as in --set ww09.masking=correlated; may be repeated.",
+)
+@click.option(
+    "--subcells",
+    type=click.IntRange(1, 99),
+    default=5,
+    show_default=True,
+    help="Sub-cells along each side of a cell over which models are integrated.",
+)
+@click.option("--allow-partial", is_flag=True, help="Accept results of interrupted simulations.")
+@click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
+@debug_option
+def compare(results, models, output, settings, subcells, allow_partial, quiet):
+    """Compare published models with the result file or folder of files RESULT_OR_FOLDER.
+
+    Each model is integrated over the cells of the result, and its error is given without the noise
+    of the simulation. The report holds tables (errors.csv, errors.json), the integrated slices
+    (models.h5) and figures. `goniosim models` lists the models and their options.
+    """
+    from goniosim.compare.comparison import result_files
+    from goniosim.compare.variants import check_request
+    from goniosim.report import compare_report
+
+    request = check_request(_names(models), _options(settings))
+    paths = result_files(results)
+    compare_report.check_headers(paths, allow_partial)
+    folder = Path(output or f"{Path(results).resolve().stem}-comparison")
+
+    def say(message):
+        if not quiet:
+            click.echo(message, err=True)
+
+    with contextlib.closing(compare_report.Report(folder, request, subcells)) as report:
+        for number, path in enumerate(paths, 1):
+            report.add(path, lambda message, n=number: say(f"{n}/{len(paths)} {message}"))
+        text = report.finish()
+    if not quiet:
+        click.echo(text)
+        click.echo(f"\n{folder}")
+
+
+def _names(models):
+    return [name.strip() for name in models.split(",")] if models is not None else None
+
+
+def _options(settings):
+    from goniosim.errors import ConfigError
+
+    options = {}
+    for setting in settings:
+        path, equals, value = setting.partition("=")
+        model, dot, name = path.strip().partition(".")
+        if not (equals and dot and model and name):
+            raise ConfigError(f"--set {setting}: must be MODEL.OPTION=VALUE, such as ww09.masking=correlated")
+        options.setdefault(model, {})[name] = value.strip()
+    return options

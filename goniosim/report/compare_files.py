@@ -1,0 +1,90 @@
+"""The table of errors as CSV and JSON."""
+
+import csv
+import io
+import json
+import os
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from ..compare.integrate import available_threads
+from ..compare.rows import COLUMNS
+from ..errors import OutputError
+
+FILETYPE = "goniosim-errors"
+
+
+def provenance(subcells):
+    """Who computed the errors, when and with what, as a dict of str to str."""
+    return {
+        "created_utc": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "goniosim_version": version("goniosim"),
+        "numba_version": version("numba"),
+        "numpy_version": version("numpy"),
+        "python_version": platform.python_version(),
+        "processor": platform.processor() or platform.machine(),
+        "threads": str(available_threads()),
+        "subcells": str(subcells),
+    }
+
+
+def write_csv(path, rows, origin):
+    """Write ``errors.csv``: comments with provenance and units, a header, one line per row.
+
+    Parameters
+    ----------
+    path : Path
+    rows : list of dict
+        With the keys of `goniosim.compare.rows.COLUMNS`.
+    origin : dict of str to str
+        From `provenance`.
+    """
+    stream = io.StringIO()
+    for name, value in origin.items():
+        stream.write(f"# {name}: {value}\n")
+    for name, (unit, meaning) in COLUMNS.items():
+        stream.write(f"# column {name}{f' [{unit}]' if unit else ''}: {meaning}\n")
+    writer = csv.DictWriter(stream, list(COLUMNS), lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({name: _shown(value) for name, value in row.items()})
+    _replace(path, stream.getvalue())
+
+
+def write_json(path, rows, origin, sources):
+    """Write ``errors.json``: the same rows with units and provenance.
+
+    Parameters
+    ----------
+    path, rows, origin
+        As in `write_csv`.
+    sources : list of dict
+        `goniosim.compare.summary.Summary.source` of every material.
+    """
+    head = {
+        "filetype": FILETYPE,
+        "provenance": origin,
+        "columns": {name: {"unit": unit, "meaning": meaning} for name, (unit, meaning) in COLUMNS.items()},
+        "results": sources,
+    }
+    text = json.dumps(head, indent=1, allow_nan=False)
+    lines = ",\n".join(json.dumps(row, allow_nan=False) for row in rows)
+    _replace(path, f'{text[:-2]},\n "errors": [\n{lines}\n ]\n}}\n')
+
+
+def _shown(value):
+    if value is None:
+        return ""
+    return f"{value:.9g}" if isinstance(value, float) else value
+
+
+def _replace(path, text):
+    """Write a text file whole or not at all."""
+    temporary = Path(path).with_name(f".{Path(path).name}.part")
+    try:
+        temporary.write_text(text, encoding="utf-8")
+        os.replace(temporary, path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another place") from error
