@@ -12,8 +12,9 @@ def with_error(value, stderr, decimals=5):
     ----------
     value, stderr : float
     decimals : int
-        Decimals of a value whose standard error is zero (known without noise) or more than
-        three places further down; a small one gets four digits instead.
+        Decimals of a value whose standard error is zero (known without noise), or more than
+        three places further down and less than a millionth of the value; a small one gets
+        four digits instead.
 
     Returns
     -------
@@ -21,7 +22,7 @@ def with_error(value, stderr, decimals=5):
         The error has one significant digit, two when the first of them is a 1 (one digit
         alone would there be wrong by up to a half). A plain number when there is no error.
     """
-    if stderr < 10.0 ** -(decimals + 3):
+    if stderr == 0.0 or (stderr < 10.0 ** -(decimals + 3) and stderr < 1e-6 * abs(value)):
         small = 0.0 < abs(value) < 10.0 ** (3 - decimals)
         return f"{value:.4g}" if small else f"{value:.{decimals}f}"
     exponent = math.floor(math.log10(stderr))
