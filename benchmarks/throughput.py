@@ -45,7 +45,8 @@ LAYERS = {
 
 def scene(name, theta):
     """The named stack, lit from ``theta`` degrees."""
-    return parse_scene({"material": {"name": name, "layers": LAYERS[name]}, "incident": {"theta_deg": [theta]}})
+    material = {"name": name, "layers": LAYERS[name]}
+    return parse_scene({"material": material, "incident": {"theta_deg": [theta]}})
 
 
 def stack_text(layers):

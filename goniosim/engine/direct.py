@@ -69,9 +69,8 @@ def direct_reflection(plan, direction):
     computed = plan.n_distinct if kind == ROUGH_CONDUCTOR else 1
     for c in range(computed):
         for row in range(plan.rows):  # one call would keep Ctrl-C waiting on fine slices
-            _integrate_row(
-                kind, alpha, eta, spectral[:, c], plan.parametrization, light, peak, scales, row, energy[c], error[c]
-            )
+            surface = (kind, alpha, eta, spectral[:, c], plan.parametrization, light)
+            _integrate_row(surface, peak, scales, row, energy[c], error[c])
     energy[computed:] = energy[0]
     error[computed:] = error[0]
     return energy, error
@@ -96,7 +95,7 @@ def _fresnel(kind, eta, spectral, cosine):
 
 
 @kernel
-def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, scales, row, energy, error):
+def _integrate_row(surface, peak, scales, row, energy, error):
     rows, columns = energy.shape
     d_u = HALF_PI / rows
     d_phi = TWO_PI / columns
@@ -112,7 +111,7 @@ def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, sca
         absolute = ABSOLUTE_TOLERANCE
         for _ in range(2):
             value, accuracy = _integrate_cell(
-                kind, alpha, eta, spectral, parametrization, light, peak, scales, u, phi, d_u, width, relative, absolute, todo
+                surface, peak, scales, (u, phi, d_u, width), relative, absolute, todo
             )
             if accuracy <= RELATIVE_TOLERANCE * value + ABSOLUTE_TOLERANCE:
                 break
@@ -126,9 +125,27 @@ def _integrate_row(kind, alpha, eta, spectral, parametrization, light, peak, sca
 
 
 @kernel
-def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, scales, u, phi, d_u, d_phi, relative, absolute, todo):
-    """Integral and error estimate over one cell; ``todo`` is a stack of (u, phi, widths, rule, depth)."""
-    whole = _rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi)
+def _integrate_cell(surface, peak, scales, cell, relative, absolute, todo):
+    """Integral and error estimate over one cell.
+
+    Parameters
+    ----------
+    surface : tuple
+        Kind, alpha, eta and spectral row of the interface, parametrization, light.
+    peak : float
+        Row coordinate of the mirror direction.
+    scales : ndarray, shape (2,)
+        Width of the lobe in row coordinate and azimuth.
+    cell : tuple
+        Row coordinate, azimuth, and the two widths of the cell.
+    relative, absolute : float
+        Accuracy of every part.
+    todo : ndarray, shape (>= 4 MAX_DEPTH, 6)
+        A stack of parts: u, phi, the two widths, the rule on the part, its depth.
+    """
+    _, _, _, _, parametrization, light = surface
+    u, phi, d_u, d_phi = cell
+    whole = _rule(surface, u, phi, d_u, d_phi)
     todo[0] = (u, phi, d_u, d_phi, whole, 0.0)
     n = 1
     total = 0.0
@@ -146,7 +163,8 @@ def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, sc
         long_u = d_u / scales[0]
         long_phi = d_phi / scales[1]
         # At the pole the lobe lies at every azimuth.
-        near = (abs(u + 0.5 * d_u - peak) <= d_u) & ((abs(phi + 0.5 * d_phi - math.pi) <= d_phi) | (peak <= d_u))
+        near_in_phi = (abs(phi + 0.5 * d_phi - math.pi) <= d_phi) | (peak <= d_u)
+        near = (abs(u + 0.5 * d_u - peak) <= d_u) & near_in_phi
         holds_peak = near & (max(long_u, long_phi) > 1.0)
         # Across only, on the way to the peak; everywhere else the error must show in both directions.
         n_u = 1 if holds_peak & (long_phi > 4.0 * long_u) else 2
@@ -158,7 +176,7 @@ def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, sc
             for j in range(n_phi):
                 start_u = u + i * part_u
                 start_phi = phi + j * part_phi
-                value = _rule(kind, alpha, eta, spectral, parametrization, light, start_u, start_phi, part_u, part_phi)
+                value = _rule(surface, start_u, start_phi, part_u, part_phi)
                 todo[n + n_phi * i + j] = (start_u, start_phi, part_u, part_phi, value, depth + 1)
                 parts += value
         difference = abs(parts - whole)
@@ -172,25 +190,25 @@ def _integrate_cell(kind, alpha, eta, spectral, parametrization, light, peak, sc
 
 
 @kernel
-def _rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi):
+def _rule(surface, u, phi, d_u, d_phi):
     """Gauss-Legendre rules on one rectangle of the slice, cut where the horizon leaves it.
 
     Rows below the first of the two cuts are wholly visible, those above the second not at all.
     """
+    _, _, _, _, parametrization, light = surface
     first = min(max(horizon_coordinate(parametrization, phi + d_phi, light[0], light[2]) - u, 0.0), d_u)
     second = min(max(horizon_coordinate(parametrization, phi, light[0], light[2]) - u, 0.0), d_u)
     total = 0.0
     if first > 0.0:
-        total += _smooth_rule(kind, alpha, eta, spectral, parametrization, light, u, phi, first, d_phi)
+        total += _smooth_rule(surface, u, phi, first, d_phi)
     if second > first:
-        total += _smooth_rule(
-            kind, alpha, eta, spectral, parametrization, light, u + first, phi, second - first, d_phi
-        )
+        total += _smooth_rule(surface, u + first, phi, second - first, d_phi)
     return total
 
 
 @kernel
-def _smooth_rule(kind, alpha, eta, spectral, parametrization, light, u, phi, d_u, d_phi):
+def _smooth_rule(surface, u, phi, d_u, d_phi):
+    kind, alpha, eta, spectral, parametrization, light = surface
     lx = light[0]
     ly = light[1]
     lz = light[2]

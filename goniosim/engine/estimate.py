@@ -99,8 +99,8 @@ def components(plan, tallies, rays, direct):
         found[name] = _sampled(plan, tallies, rays, first, count, delta)
         if plan.orders:
             for i in range(count):
-                last = "_and_more" if i == count - 1 else ""
-                found[name].orders[f"order_{lowest + i}{last}"] = _sampled(plan, tallies, rays, first + i, 1, delta)
+                order = f"order_{lowest + i}" + ("_and_more" if i == count - 1 else "")
+                found[name].orders[order] = _sampled(plan, tallies, rays, first + i, 1, delta)
     return found
 
 

@@ -57,12 +57,13 @@ class Workspace:
         self.state = np.zeros(N_STATE, np.int64)
         self.filled = np.zeros(2 * k, np.int64)
         # Rays are launched only while every queue holds less than a batch, so this never overflows.
-        self.queues = np.empty((2 * k, fields, (2 * k + 1) * BATCH))
-        self.work = np.empty((fields, BATCH))
-        self.scratch = np.empty((N_SCRATCH, BATCH))
-        self.places = np.empty((2, BATCH), np.uint32)
-        self.exits = np.empty((2, fields, 2 * BATCH))
+        queues = np.empty((2 * k, fields, (2 * k + 1) * BATCH))
+        work = np.empty((fields, BATCH))
+        scratch = np.empty((N_SCRATCH, BATCH))
+        places = np.empty((2, BATCH), np.uint32)
+        exits = np.empty((2, fields, 2 * BATCH))
         self.n_exits = np.zeros(2, np.int64)
+        self.space = (self.state, self.filled, queues, work, scratch, places, exits, self.n_exits)
         # In the analog estimator a path leaves once: every deposit is a path of its own.
         self.paths = np.arange(2 * BATCH, dtype=np.int64)
         self.cells = np.empty(2 * BATCH, np.int32)
@@ -108,14 +109,7 @@ class Workspace:
             light,
             key,
             BUDGET,
-            self.state,
-            self.filled,
-            self.queues,
-            self.work,
-            self.scratch,
-            self.places,
-            self.exits,
-            self.n_exits,
+            self.space,
             tally.ledger,
             cells,
         ):

@@ -39,7 +39,7 @@ MAX_ROUNDS = 10_000
 
 
 @kernel
-def walk(stack, light, unit_key, budget, state, filled, queues, work, scratch, places, exits, n_exits, ledger, cells):
+def walk(stack, light, unit_key, budget, space, ledger, cells):
     """Advance one work unit by about ``budget`` events; returns whether it is finished.
 
     Parameters
@@ -52,20 +52,16 @@ def walk(stack, light, unit_key, budget, state, filled, queues, work, scratch, p
         Key of the work unit's random numbers.
     budget : int
         Events after which to return to the caller, who looks at signals.
-    state : ndarray of int64, shape (N_STATE,)
-        Where the unit stands.
-    filled : ndarray of int64, shape (2 K,)
-        Number of rays in each queue.
-    queues : ndarray, shape (2 K, fields, capacity)
-    work, scratch, places : ndarray
-        One batch, its scratch rows and two rows of indices.
-    exits, n_exits : ndarray, shapes (2, fields, capacity) and (2,)
-        Rays that left upwards and downwards and await their cell.
+    space : tuple
+        The arrays of a `unit.Workspace`: state of the unit, number of rays in each queue, queues,
+        one batch, its scratch rows, two rows of indices, and the rays that left upwards and
+        downwards and await their cell, with their numbers.
     ledger : ndarray, shape (N_LEDGER, channels)
     cells : tuple
         What `tally.flush` needs.
     """
     kinds, alphas, etas, spectral, forgets, taus, absorbs, with_orders = stack
+    state, filled, queues, work, scratch, places, exits, n_exits = space
     n_interfaces = kinds.shape[0]
     batch_size = work.shape[1]
     channels = ledger.shape[1]

@@ -24,14 +24,15 @@ _INTEGER_IN_LOW_BITS = 6755399441055744.0
 
 
 def _atan_coefficients(degree=10):
-    """Power-series coefficients in z of the Chebyshev interpolant of atan(sqrt z)/sqrt z on [0, tan^2(pi/8)]."""
+    """Coefficients in powers of z of atan(sqrt z) / sqrt z on [0, tan^2(pi/8)], by Chebyshev interpolation."""
     top = _TAN_PI_8**2
 
     def f(z):
         root = np.sqrt(z)
         return np.arctan(root) / root
 
-    return np.polynomial.Chebyshev.interpolate(f, degree, domain=[0.0, top]).convert(kind=np.polynomial.Polynomial).coef
+    interpolant = np.polynomial.Chebyshev.interpolate(f, degree, domain=[0.0, top])
+    return interpolant.convert(kind=np.polynomial.Polynomial).coef
 
 
 (_A0, _A1, _A2, _A3, _A4, _A5, _A6, _A7, _A8, _A9, _A10) = (float(c) for c in _atan_coefficients())

@@ -63,7 +63,8 @@ def test_dielectric_at_normal_incidence_and_brewster():
     sine = math.sin(theta)
     # At the Brewster angle only the s polarisation is reflected.
     t = math.sqrt(1.5**2 - sine**2)
-    assert _dielectric(math.cos(theta), 1.5)[0] == pytest.approx(0.5 * ((math.cos(theta) - t) / (math.cos(theta) + t)) ** 2)
+    r_s = (math.cos(theta) - t) / (math.cos(theta) + t)
+    assert _dielectric(math.cos(theta), 1.5)[0] == pytest.approx(0.5 * r_s**2)
 
 
 def test_dielectric_is_the_same_from_both_sides():
