@@ -33,10 +33,13 @@ def test_importing_the_package_loads_nothing_heavy(python):
 def test_the_public_names_are_there_and_no_others():
     import goniosim
 
-    assert dir(goniosim) == ["__version__", "load_scene", "open_result", "simulate"]
+    names = ["__version__", "compare", "evaluate_model", "load_scene", "open_result", "simulate"]
+    assert dir(goniosim) == names
     assert goniosim.__version__ == version("goniosim")
     assert callable(goniosim.load_scene)
     assert callable(goniosim.open_result)
+    assert callable(goniosim.compare)
+    assert callable(goniosim.evaluate_model)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         goniosim.nonsense
 

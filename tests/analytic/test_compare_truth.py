@@ -1,0 +1,97 @@
+"""Comparisons whose outcome is known: models that are the truth, closed forms, and a lobe that 5 x 5 misses."""
+
+import math
+
+import numpy as np
+import pytest
+from reference.closed_forms import fresnel_dielectric, refracted_cosine
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+
+import goniosim
+from goniosim.compare.measures import rmse
+
+
+def compare(scene, models, **simulation):
+    result = goniosim.simulate(scene, threads=2, **simulation)
+    return goniosim.compare(result, models=models).materials[0]
+
+
+@pytest.mark.parametrize("rays", [2_000, 40_000])
+def test_a_model_that_is_the_truth_has_no_error_left(rays):
+    """A bare rough conductor, as the base under a coat of air, is what Eq. 5 computes exactly.
+
+    50 seeds: the mean of the debiased squared error lies within 3 standard errors of zero, with the
+    standard error from the scatter between seeds: false-alarm rate 0.3 % per ray count. Beyond that the
+    stated variance must agree with the scatter (chi-square of 50 values, 4 sigma).
+    """
+    layers = [dielectric(1.0), conductor(1.45, 1.0, 0.3)]
+    scene = make_scene(layers, 40.0, rows=12, columns=24)
+    debiased, variance, raw = [], [], []
+    for seed in range(1, 51):
+        found = compare(scene, ["bati19_ww"], rays=rays, seed=seed).compared[0]
+        debiased.append(found.converged.squared[0, 0] - found.converged.noise[0, 0])
+        variance.append(found.converged.variance_if_true[0, 0])
+        raw.append(found.converged.squared[0, 0])
+    sigma = np.std(debiased, ddof=1) / 50.0**0.5
+    assert abs(np.mean(debiased)) < 3.0 * sigma
+    assert np.mean(raw) > 10.0 * sigma
+    assert np.mean(variance) == pytest.approx(np.var(debiased, ddof=1), rel=4.0 * (3.0 / 50.0) ** 0.5)
+
+
+def test_eq_5_on_a_smooth_plastic_misses_just_the_inter_reflections():
+    """Under a smooth coat over a dark base, Eq. 5 integrates to its closed form, and so does its error."""
+    theta_deg, n, tau, rho = 50.0, 1.5, 0.3, 0.2
+    scene = make_scene([dielectric(n), medium(tau), lambert(rho)], theta_deg, rows=45, columns=8)
+    comparison = compare(scene, ["bati19_ww"], rays=10_000)
+    cells = comparison.result.cells
+    middle = np.radians(0.5 * (cells.row_edges[:-1] + cells.row_edges[1:]))
+    cos_l, cos_v = math.cos(math.radians(theta_deg)), np.cos(middle)
+    path = 1.0 / refracted_cosine(cos_l, n) + 1.0 / refracted_cosine(cos_v, n)
+    through = (1.0 - fresnel_dielectric(cos_l, n)) * (1.0 - fresnel_dielectric(cos_v, n))
+    exact = through * rho / (math.pi * n * n) * np.exp(-tau * path)
+    found = comparison.bsdf("bati19_ww", "reflection/internal")[0, 0, :, 0]
+    # The last rows end at the horizon, where the transmissivity has its steep end.
+    np.testing.assert_allclose(found[:-5], exact[:-5], rtol=2e-3)
+
+
+def test_both_parametrizations_integrate_to_the_same_albedo():
+    """A broad lobe: cells of a half slice that the horizon cuts are left out, which costs well below 1 % at 30 deg."""
+    layers = [dielectric(1.5, 0.3), medium(0.1), conductor(1.45, 1.0, 0.3)]
+    albedos = []
+    for parametrization in ("classic", "half"):
+        scene = make_scene(layers, 30.0, parametrization, rows=90, columns=120)
+        found = compare(scene, ["bati19_belcour"], rays=1_000).compared[0]
+        albedos.append(found.measures.albedo_model[0])
+    np.testing.assert_allclose(albedos[1], albedos[0], rtol=1e-2)
+
+
+def test_a_spike_on_the_corner_of_four_cells_is_missed_by_5_by_5_and_marked():
+    """ww09 over alpha0 0.2 and alpha1 0.001 at 85 degrees: too small by a factor of ten, and said so."""
+    layers = [dielectric(1.5, 0.2), medium(0.2), conductor(1.2, [1.0, 0.01, 0.01], 0.001)]
+    comparison = compare(make_scene(layers, 85.0), ["ww09"], rays=10_000)
+    found = comparison.compared[0]
+    assert not found.is_converged()
+    assert rmse(found.converged).rmse > 8.0 * rmse(found.measures).rmse
+    row = comparison.result.cells.row_edges.searchsorted(85.0)
+    energy = comparison.slices["ww09", "reflection/internal"].energy[0, 0]
+    assert energy[row - 1 : row + 1, 179:181].sum() < 0.2 * found.converged.albedo_model[0, 0]
+
+
+def test_eq_6_and_forward_agree_on_internal_paths_and_eq_6_is_exact_on_direct_ones():
+    layers = [dielectric(1.5, 0.2), conductor(1.45, 1.0, 0.2)]
+    scene = make_scene(layers, 60.0, rows=45, columns=60)
+    comparison = compare(scene, ["belcour18_forward", "bati19_belcour"], rays=20_000)
+    internal = [comparison.bsdf(name, "reflection/internal") for name in ("belcour18_forward", "bati19_belcour")]
+    np.testing.assert_array_equal(*internal)
+    direct, _ = comparison.reference("reflection/direct")
+    model = comparison.slices["bati19_belcour", "reflection/direct"].bsdf
+    assert np.abs(model - direct).max() < 2e-3 * direct.max()
+
+
+def test_models_that_see_light_nowhere_cause_no_nan():
+    scene = make_scene([dielectric(1.5, 0.1), medium(1e9), lambert(0.5)], 45.0, rows=6, columns=8)
+    comparison = compare(scene, None, rays=1_000)
+    for found in comparison.compared:
+        error = rmse(found.measures)
+        assert np.isfinite([error.rmse, error.stderr, error.upper]).all()
+    assert rmse(comparison.compared[0].measures).rmse == 0.0
