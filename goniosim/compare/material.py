@@ -68,9 +68,10 @@ class Compared:
 
     def is_converged(self, direction=None, channel=None):
         """Whether the sub-cells asked for give the RMSE to 2 %; arguments as in `measures.rmse`."""
-        found = rmse(self.measures, direction, channel).raw
-        limit = rmse(self.converged, direction, channel).raw
-        return abs(found - limit) <= CONVERGED * limit
+        found, limit = (rmse(each, direction, channel) for each in (self.measures, self.converged))
+        if not (found.significant or limit.significant):
+            return True
+        return abs(found.raw - limit.raw) <= CONVERGED * limit.raw
 
 
 @dataclass(frozen=True)

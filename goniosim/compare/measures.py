@@ -20,6 +20,8 @@ import numpy as np
 # A debiased squared error is told from noise if it exceeds so many standard errors of that of a true
 # model: one true model in 44 is called wrong, a few more where only a few cells count.
 SIGNIFICANT = 2.0
+# Share of the norm of the reference below which an error is rounding: references are not more exact.
+ROUNDING = 1e-8
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ class Error:
     noise_floor : float
         What Eq. 4 would give for the true model.
     significant : bool
-        Whether ``rmse`` is told from noise.
+        Whether ``rmse`` is told from noise and from rounding.
     """
 
     rmse: float
@@ -158,11 +160,13 @@ def rmse(measures, direction=None, channel=None):
     variance, if_true = measures.variance[pick], measures.variance_if_true[pick]
     sigma = np.sqrt(variance.sum(axis=0)) / len(variance)
     sigma_if_true = np.sqrt(if_true.sum(axis=0)) / len(if_true)
+    norm = measures.norm[pick].mean(axis=0)
     if channel is not None:
-        squared, noise = squared[[channel]], noise[[channel]]
+        squared, noise, norm = squared[[channel]], noise[[channel]], norm[[channel]]
         sigma, sigma_if_true = sigma[[channel]], sigma_if_true[[channel]]
     debiased = squared - noise
     error = np.sqrt(np.maximum(debiased, 0.0))
+    limit = SIGNIFICANT * sigma_if_true.mean() + ROUNDING**2 * norm.mean()
     upper = np.sqrt(np.maximum(debiased, 0.0) + SIGNIFICANT * sigma)
     return Error(
         rmse=float(error.mean()),
@@ -170,7 +174,7 @@ def rmse(measures, direction=None, channel=None):
         upper=float(upper.mean()),
         raw=float(np.sqrt(squared).mean()),
         noise_floor=float(np.sqrt(noise).mean()),
-        significant=bool(debiased.mean() > SIGNIFICANT * sigma_if_true.mean()),
+        significant=bool(debiased.mean() > limit),
     )
 
 

@@ -17,10 +17,10 @@ PANEL_HEIGHT, PANEL_TOP, PER_MATERIAL, NARROWEST = 2.5, 0.45, 0.34, 1.5
 # Below a panel stand the names, at a slant: room in any case, and for each letter.
 NAMES, LETTER = 0.4, 0.06
 
-TITLES = {
-    "plastics": "Plastics, internal paths",
-    "metals": "Metals, internal paths",
-    "slabs": "Slabs, transmission",
+COMPONENTS = {
+    "reflection/internal": "internal paths",
+    "transmission": "transmission",
+    "reflection": "reflection off a single interface",
 }
 
 
@@ -75,7 +75,9 @@ def _longest(groups):
 
 def _row(figure, top, category, groups, widths):
     height = figure.get_figheight()
-    figure.text(0.2 / figure.get_figwidth(), 1.0 - (top + 0.02) / height, TITLES[category], fontsize=10.5,
+    shown = {COMPONENTS[summary.component]: None for _, group in groups for summary in group}
+    title = f"{category.capitalize()}: {', '.join(shown)}"
+    figure.text(0.2 / figure.get_figwidth(), 1.0 - (top + 0.02) / height, title, fontsize=10.5,
                 fontweight="bold", va="top")
     low, high = _range([summary for _, group in groups for summary in group])
     left = LEFT

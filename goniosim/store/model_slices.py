@@ -60,7 +60,9 @@ class ModelSlicesFile:
 
     def discard(self):
         """Close and remove the file, unless it was committed."""
-        self._file.close()
+        # A full disk makes closing fail too; the file goes anyway.
+        with contextlib.suppress(OSError, RuntimeError):
+            self._file.close()
         with contextlib.suppress(OSError):
             os.unlink(self._temporary)
 
@@ -118,7 +120,7 @@ class ModelSlicesFile:
     def _explained(self):
         try:
             yield
-        except OSError as error:
+        except (OSError, RuntimeError) as error:
             raise OutputError(f"{self._path}: cannot be written: {error}; choose another place") from error
 
 

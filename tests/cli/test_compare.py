@@ -48,8 +48,8 @@ def report(tmp_path_factory):
     plastic = make_result(components=("reflection/direct", "reflection/internal"), channels=("R", "G", "B"))
     write_result(plastic, folder / "results" / "plastic.h5")
     code, out, err = run(
-        "compare", folder / "results", "-o", folder / "report", "--models", "ww09,bati19_ww,belcour18_forward",
-        "--set", "ww09.masking=correlated", "--subcells", "9",
+        "compare", folder / "results", "-o", folder / "report", "--subcells", "9",
+        "--models", "ww09,bati19_ww,belcour18_forward", "--set", "ww09.masking=correlated",
     )
     assert code == 0, err
     return folder / "report", folder / "results", out, err
@@ -63,10 +63,12 @@ def read_csv(path):
 def test_the_table_ranks_the_models_and_knows_what_is_noise(report):
     _, _, out, err = report
     metal = out[out.index("metal  (reflection/internal)") : out.index("synthetic  (reflection/internal)")]
-    lines = [line.split()[0] for line in metal.splitlines()[3:7]]
-    assert sorted(lines) == sorted(
-        ["bati19_ww", "belcour18_forward", "belcour18_forward[refraction_scale=paper]", "ww09[masking=correlated]"]
-    )
+    assert sorted(line.split()[0] for line in metal.splitlines()[3:7]) == [
+        "bati19_ww",
+        "belcour18_forward",
+        "belcour18_forward[refraction_scale=paper]",
+        "ww09[masking=correlated]",
+    ]
     (exact,) = [line for line in metal.splitlines() if line.strip().startswith("bati19_ww")]
     assert "below noise" in exact
     assert "n/a: belcour18_forward: does not apply to a Lambertian base" in out

@@ -71,7 +71,8 @@ def test_the_stderr_of_the_rmse_is_honest():
     errors = [rmse(found, m) for m in range(SEEDS)]
     assert all(error.significant for error in errors)
     scatter = np.std([error.rmse for error in errors])
-    assert np.mean([error.stderr for error in errors]) == pytest.approx(scatter, rel=4.5 * (0.5 / SEEDS) ** 0.5)
+    stated = np.mean([error.stderr for error in errors])
+    assert stated == pytest.approx(scatter, rel=4.5 * (0.5 / SEEDS) ** 0.5)
 
 
 def test_all_directions_and_channels_are_combined_as_in_the_paper():

@@ -80,7 +80,8 @@ def test_the_main_component_is_that_of_the_paper():
 
 
 def test_short_names_drop_what_is_common_or_not_needed():
-    names = ["M1-alpha0_0.2-alpha1_0.1-tau_1", "M1-alpha0_0.2-alpha1_0.2-tau_1", "M2-alpha0_0.2-alpha1_0.2-tau_2"]
+    parts = ["M1-alpha0_0.2-alpha1_0.1", "M1-alpha0_0.2-alpha1_0.2", "M2-alpha0_0.2-alpha1_0.2"]
+    names = [f"{part}-tau_{number}" for number, part in enumerate(parts)]
     assert short_names(names) == ["M1-alpha1_0.1", "M1-alpha1_0.2", "M2-alpha1_0.2"]
     assert short_names(["gold"]) == ["gold"]
     assert short_names(["a", "a-b"]) == ["a", "b"]
