@@ -55,7 +55,7 @@ def test_eq_5_on_a_smooth_plastic_misses_just_the_inter_reflections():
 
 
 def test_both_parametrizations_integrate_to_the_same_albedo():
-    """A broad lobe: the cells of a half slice that the horizon cuts hold less than 1 % of it at 30 degrees."""
+    """A broad lobe: the cells of a half slice that the horizon cuts hold below 1 % of it at 30 degrees."""
     layers = [dielectric(1.5, 0.3), medium(0.1), conductor(1.45, 1.0, 0.3)]
     albedos = []
     for parametrization in ("classic", "half"):
