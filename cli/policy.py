@@ -59,7 +59,7 @@ def say_error(message):
 def _lines(error):
     if isinstance(error, ConfigError):
         n = len(error.problems)
-        return [*error.problems, f"goniosim: error: {n} mistake{'s' if n > 1 else ''} in the scene"]
+        return [*error.problems, f"goniosim: error: {n} mistake{'s' if n > 1 else ''}"]
     if isinstance(error, GoniosimError):
         return [f"goniosim: error: {error}"]
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

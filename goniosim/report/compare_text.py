@@ -3,9 +3,6 @@
 from . import text
 
 
-NEGLIGIBLE = 1e-3
-
-
 def ranking(summaries):
     """Rank the models on every material by their error.
 
@@ -78,10 +75,7 @@ def _cells(summary, row, total):
 def _error(row):
     if row["below_noise"]:
         return f"below noise (< {row['rmse_upper']:.1e})"
-    # An error far smaller than that of the integration is not worth its digits.
-    exact = row["rmse_stderr"] < NEGLIGIBLE * row["rmse"]
-    value = f"{row['rmse']:.4g}" if exact else text.with_error(row["rmse"], row["rmse_stderr"])
-    return value + ("" if row["converged"] else " *")
+    return text.with_error(row["rmse"], row["rmse_stderr"]) + ("" if row["converged"] else " *")
 
 
 def _converged(row):

@@ -46,7 +46,7 @@ def test_all_mistakes_of_a_scene_are_listed_and_counted(goniosim, folder):
     lines = err.splitlines()
     assert (code, out) == (3, "")
     assert [line.split(" ")[0] for line in lines[:3]] == ["scene.yaml:4:", "scene.yaml:5:", "scene.yaml:6:"]
-    assert lines[3:] == ["goniosim: error: 3 mistakes in the scene"]
+    assert lines[3:] == ["goniosim: error: 3 mistakes"]
 
 
 def test_a_single_mistake_is_not_several(goniosim, folder):
@@ -54,7 +54,7 @@ def test_a_single_mistake_is_not_several(goniosim, folder):
     assert code == 3
     assert err.splitlines() == [
         "absent.yaml: there is no such file: check the path",
-        "goniosim: error: 1 mistake in the scene",
+        "goniosim: error: 1 mistake",
     ]
 
 
