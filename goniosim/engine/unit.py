@@ -60,10 +60,11 @@ class Workspace:
         queues = np.empty((2 * k, fields, (2 * k + 1) * BATCH))
         work = np.empty((fields, BATCH))
         scratch = np.empty((N_SCRATCH, BATCH))
+        steps = np.empty(BATCH, np.uint64)
         places = np.empty((2, BATCH), np.uint32)
         exits = np.empty((2, fields, 2 * BATCH))
         self.n_exits = np.zeros(2, np.int64)
-        self.space = (self.state, self.filled, queues, work, scratch, places, exits, self.n_exits)
+        self.space = (self.state, self.filled, queues, work, scratch, steps, places, exits, self.n_exits)
         # In the analog estimator a path leaves once: every deposit is a path of its own.
         self.paths = np.arange(2 * BATCH, dtype=np.int64)
         self.cells = np.empty(2 * BATCH, np.int32)

@@ -7,6 +7,8 @@ same kind of interface from the same side, so the loops have no branches, and a 
 the code of the layers it has.
 """
 
+import numpy as np
+
 from .._jit import kernel
 from ..optics.random import derive_key
 from . import tally
@@ -32,6 +34,8 @@ from .stages import scatter
 from .stages.travel import absorb, drop_dead, roulette
 
 ABOVE, BELOW = 0, 1
+_HALF_WORD = np.uint64(32)
+_LOW_HALF = np.uint64(0xFFFFFFFF)
 
 # Stages per queue that a work unit may run after its last ray was launched. Rays that are still
 # on their way then are booked as lost. No ray is cut before it has met this many interfaces.
@@ -54,14 +58,14 @@ def walk(stack, light, unit_key, budget, space, ledger, cells):
         Events after which to return to the caller, who looks at signals.
     space : tuple
         The arrays of a `unit.Workspace`: state of the unit, number of rays in each queue, queues,
-        one batch, its scratch rows, two rows of indices, and the rays that left upwards and
+        one batch, its scratch rows, one and two rows for sorting it, and the rays that left upwards and
         downwards and await their cell, with their numbers.
     ledger : ndarray, shape (N_LEDGER, channels)
     cells : tuple
         What `tally.flush` needs.
     """
     kinds, alphas, etas, spectral, forgets, taus, absorbs, with_orders = stack
-    state, filled, queues, work, scratch, places, exits, n_exits = space
+    state, filled, queues, work, scratch, steps, places, exits, n_exits = space
     n_interfaces = kinds.shape[0]
     batch_size = work.shape[1]
     channels = ledger.shape[1]
@@ -104,7 +108,7 @@ def walk(stack, light, unit_key, budget, space, ledger, cells):
         if gambled:
             drop_dead(scratch[GAIN], n, scratch[BOOST])
 
-        n_reflected, n_through = _sort(scratch[GAIN], scratch[TRANSMITTED], n, places[0], places[1])
+        n_reflected, n_through = _sort(scratch[GAIN], scratch[TRANSMITTED], n, steps, places[0], places[1])
         for through in range(2):
             count = n_through if through else n_reflected
             if count == 0:
@@ -162,18 +166,23 @@ def _pop(queue, start, work, n, first):
 
 
 @kernel
-def _sort(gain, transmitted, n, reflected_places, through_places):
-    """List the places of the rays that were reflected and of those that went through."""
-    n_reflected = 0
-    n_through = 0
+def _sort(gain, transmitted, n, steps, reflected_places, through_places):
+    """List the places of the rays that were reflected and of those that went through.
+
+    Every ray is written to the end of both lists; its step moves the end of one of them, or
+    of none. Both ends are halves of one number, so that the loop that cannot be vectorised does
+    a single addition.
+    """
     for i in range(n):
         alive = 1 if gain[i] > 0.0 else 0
         through = alive if transmitted[i] > 0.0 else 0
-        reflected_places[n_reflected] = i
-        through_places[n_through] = i
-        n_through += through
-        n_reflected += alive - through
-    return n_reflected, n_through
+        steps[i] = (np.uint64(through) << _HALF_WORD) | np.uint64(alive - through)
+    ends = np.uint64(0)
+    for i in range(n):
+        reflected_places[ends & _LOW_HALF] = i
+        through_places[ends >> _HALF_WORD] = i
+        ends += steps[i]
+    return np.int64(ends & _LOW_HALF), np.int64(ends >> _HALF_WORD)
 
 
 @kernel
