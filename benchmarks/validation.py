@@ -69,18 +69,20 @@ def closed_form_rows(rays, seeds):
 def chi_square_rows(rays):
     """Chi-square per degree of freedom, with its distance from 1 in sigma."""
 
-    def cells(found):
-        return [f"{c.per_dof:.3f} ({c.sigmas:+.1f})" for c in found]
+    def rows(scene, alpha, slices, found):
+        for parts, chi_squares in zip(("cells", "blocks"), found, strict=True):
+            values = [f"{c.per_dof:.3f} ({c.sigmas:+.1f})" for c in chi_squares]
+            yield scene, alpha, slices, parts, *values, *[""] * (len(THETAS) - len(values))
 
     for slices in SLICES:
-        yield "plastic, smooth coat", "", slices, *cells(checks.plastic_cells(THETAS, slices, rays, 1))
+        yield from rows("plastic, smooth coat", "", slices, checks.plastic_cells(THETAS, slices, rays, 1))
         for alpha in ALPHAS:
             found = checks.conductor_cells(alpha, THETAS, slices, rays, 2)
-            yield "rough conductor", alpha, slices, *cells(found)
+            yield from rows("rough conductor", alpha, slices, found)
     for eta in (1.5, 1.0 / 1.5):
         for alpha in ALPHAS:
             found = checks.transmission_cells(alpha, eta, THETAS[:-1], rays, 3)
-            yield f"transmission, 1 to {eta:.3g}", alpha, "classic", *cells(found), ""
+            yield from rows(f"transmission, 1 to {eta:.3g}", alpha, "classic", found)
 
 
 def integration_rows():
@@ -186,7 +188,7 @@ def main():
     )
     table(
         "Every cell against its integrated density: chi-square per degree of freedom (sigma)",
-        ("scene", "alpha", "slice", *(f"{theta} deg" for theta in THETAS)),
+        ("scene", "alpha", "slice", "over", *(f"{theta} deg" for theta in THETAS)),
         chi_square_rows(rays(1e7)),
     )
     table(

@@ -17,8 +17,12 @@ ENOUGH_HITS = 30
 
 
 def _chi_squares(energies, density, thetas, parametrization, rays):
-    """One `ChiSquare` per incident direction; `density` is a function of the power of the weight."""
-    found = []
+    """Chi-squares of every cell and of blocks of 10 by 30 cells, one of each per incident direction.
+
+    Single cells would show a local error, blocks a small one that many cells share.
+    `density` is a function of the power of the weight.
+    """
+    cells, blocks = [], []
     for energy, theta in zip(energies, thetas, strict=True):
         # Grey scenes: all channels must hold the same numbers.
         assert (energy == energy[0]).all()
@@ -26,12 +30,18 @@ def _chi_squares(energies, density, thetas, parametrization, rays):
             integrate_cells(density(power), theta, *energy.shape[1:], parametrization, absolute=1e-10)
             for power in (1, 2)
         )
-        found.append(chi_square(energy[0], mean, second, rays))
-    return found
+        cells.append(chi_square(energy[0], mean, second, rays))
+        blocks.append(chi_square(*(_blocks(a) for a in (energy[0], mean, second)), rays))
+    return cells, blocks
+
+
+def _blocks(cells):
+    rows, columns = cells.shape
+    return cells.reshape(rows // 10, 10, columns // 30, 30).sum(axis=(1, 3))
 
 
 def plastic_cells(thetas, parametrization, rays, seed):
-    """Chi-square of every cell of an absorbing smooth coat over a Lambertian base."""
+    """Chi-squares of an absorbing smooth coat over a Lambertian base."""
     scene = make_scene([dielectric(1.5), medium(0.2), lambert(0.5)], thetas, parametrization)
     energies = simulate(scene, rays=rays, seed=seed).components["reflection/internal"].energy
     return _chi_squares(
@@ -40,7 +50,7 @@ def plastic_cells(thetas, parametrization, rays, seed):
 
 
 def conductor_cells(alpha, thetas, parametrization, rays, seed):
-    """Chi-square of every cell of a bare rough conductor, sampled.
+    """Chi-squares of a bare rough conductor, sampled.
 
     The engine integrates the direct reflection of the top interface. Below an
     index-matched smooth interface, which reflects nothing, the same conductor
@@ -55,7 +65,7 @@ def conductor_cells(alpha, thetas, parametrization, rays, seed):
 
 
 def transmission_cells(alpha, eta, thetas, rays, seed):
-    """Chi-square of every cell of the light refracted by one rough interface."""
+    """Chi-squares of the light refracted by one rough interface."""
     scene = make_scene([dielectric(eta, alpha)], thetas)
     energies = simulate(scene, rays=rays, seed=seed).components["transmission"].energy
     return _chi_squares(
