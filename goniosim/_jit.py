@@ -1,8 +1,13 @@
-"""The two decorators under which all compiled code is written, and where the compiled code is kept.
+"""The three decorators under which all compiled code is written, and where the compiled code is kept.
 
 ``scalar``
     Pure functions of numbers. They are inlined into the loops that call them, so that
     the loops stay straight-line code that LLVM turns into SIMD instructions.
+``stage``
+    Functions over arrays, called by kernels and merged into them. A call that stays a call is
+    resolved by name, and may find a copy that was compiled along with another caller; where the
+    order of a sum is the compiler's to choose, copies differ in the last bit, and a first run would
+    not equal a later one that takes its kernels from the cache.
 ``kernel``
     Functions over arrays, called from Python. They release the GIL and are cached on disk.
 
@@ -70,6 +75,11 @@ CACHE_FOLDER = _cache_folder()
 def scalar(function):
     """Compile a pure function of numbers, to be inlined into its callers."""
     return njit(inline="always", error_model="numpy", fastmath=FASTMATH)(function)
+
+
+def stage(function):
+    """Compile a function over arrays, to be merged into the kernels that call it."""
+    return njit(forceinline=True, nogil=True, error_model="numpy", fastmath=FASTMATH)(function)
 
 
 def kernel(function):

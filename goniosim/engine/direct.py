@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import kernel, stage
 from ..optics.elementary import TWO_PI
 from ..optics.fresnel import fresnel_conductor, fresnel_dielectric
 from ..optics.microfacet import microfacet_reflection
@@ -55,7 +55,7 @@ def direct_reflection(plan, direction):
     if kind in (SMOOTH_DIELECTRIC, SMOOTH_CONDUCTOR):
         energy = np.zeros(shape)
         for c in range(plan.n_distinct):
-            energy[c].flat[mirror_cell(plan, direction)] = _fresnel(kind, eta, spectral[:, c], light[2])
+            energy[c].flat[mirror_cell(plan, direction)] = _reflectance(kind, eta, spectral[:, c], light[2])
         return energy, np.zeros(shape)
     module = PARAMETRIZATIONS[plan.parametrization_name][1]
     theta = math.radians(plan.theta_deg[direction])
@@ -82,11 +82,21 @@ def mirror_cell(plan, direction):
     cell = np.empty(1, np.int32)
     # The view vector minus its horizontal part: that of the mirror direction is the light itself.
     x, y, z = light[:, None].copy()
-    cells_of(plan.parametrization, x, y, z, 1, plan.rows, plan.columns, light, cell)
+    _find_cells(plan.parametrization, x, y, z, 1, plan.rows, plan.columns, light, cell)
     return int(cell[0])
 
 
 @kernel
+def _find_cells(parametrization, x, y, z, n, rows, columns, light, cell):
+    cells_of(parametrization, x, y, z, n, rows, columns, light, cell)
+
+
+@kernel
+def _reflectance(kind, eta, spectral, cosine):
+    return _fresnel(kind, eta, spectral, cosine)
+
+
+@stage
 def _fresnel(kind, eta, spectral, cosine):
     if kind == ROUGH_DIELECTRIC or kind == SMOOTH_DIELECTRIC:
         reflectance, _ = fresnel_dielectric(cosine, eta)
@@ -124,7 +134,7 @@ def _integrate_row(surface, peak, scales, row, energy, error):
             error[row, j] = copies * accuracy
 
 
-@kernel
+@stage
 def _integrate_cell(surface, peak, scales, cell, relative, absolute, todo):
     """Integral and error estimate over one cell.
 
@@ -189,7 +199,7 @@ def _integrate_cell(surface, peak, scales, cell, relative, absolute, todo):
     return total, error
 
 
-@kernel
+@stage
 def _rule(surface, u, phi, d_u, d_phi):
     """Gauss-Legendre rules on one rectangle of the slice, cut where the horizon leaves it.
 
@@ -206,7 +216,7 @@ def _rule(surface, u, phi, d_u, d_phi):
     return total
 
 
-@kernel
+@stage
 def _smooth_rule(surface, u, phi, d_u, d_phi):
     kind, alpha, eta, spectral, parametrization, light = surface
     lx = light[0]

@@ -7,7 +7,7 @@ ordered by path and cell; the error bars then count every path once.
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import stage
 from ..slices import cells_of
 from .layout import WEIGHT, X, Y, Z
 
@@ -17,7 +17,7 @@ def record_length(channels):
     return 8 * -(-(2 * channels + 1) // 8)
 
 
-@kernel
+@stage
 def flush(side, exits, n, cells):
     """Deposit the first ``n`` rays of ``exits``, which left upwards (side 0) or downwards (1)."""
     parametrization, rows, columns, light, slots, paths, places, histogram, channels = cells
@@ -26,7 +26,7 @@ def flush(side, exits, n, cells):
     add_deposits(histogram, paths, places, exits, n, channels)
 
 
-@kernel
+@stage
 def _choose_slot(exits, n, channels, slot, size, places):
     first, count, first_order = slot
     if count == 1:
@@ -38,7 +38,7 @@ def _choose_slot(exits, n, channels, slot, size, places):
             places[i] += (first + min(np.int64(order[i]) - first_order, count - 1)) * size
 
 
-@kernel
+@stage
 def add_deposits(histogram, paths, cells, batch, n, channels):
     """Add ``n`` deposits to the records of their cells.
 
@@ -70,7 +70,7 @@ def add_deposits(histogram, paths, cells, batch, n, channels):
         i = end
 
 
-@kernel
+@stage
 def _add_three(histogram, paths, cells, red, green, blue, n):
     i = 0
     while i < n:

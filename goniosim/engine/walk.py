@@ -9,7 +9,7 @@ the code of the layers it has.
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import kernel, stage
 from ..optics.random import derive_key
 from . import tally
 from .layout import (
@@ -135,7 +135,7 @@ def walk(stack, light, unit_key, budget, space, ledger, cells):
     return False
 
 
-@kernel
+@stage
 def _fullest(filled):
     best = 0
     for q in range(1, filled.shape[0]):
@@ -144,7 +144,7 @@ def _fullest(filled):
     return best
 
 
-@kernel
+@stage
 def _launch(work, n, light, channels):
     for field in range(work.shape[0]):
         # What follows the weights is the order, which begins at zero.
@@ -156,7 +156,7 @@ def _launch(work, n, light, channels):
             row[i] = value
 
 
-@kernel
+@stage
 def _pop(queue, start, work, n, first):
     for field in range(first, work.shape[0]):
         source = queue[field][start : start + n]
@@ -165,7 +165,7 @@ def _pop(queue, start, work, n, first):
             row[i] = source[i]
 
 
-@kernel
+@stage
 def _sort(gain, transmitted, n, steps, reflected_places, through_places):
     """List the places of the rays that were reflected and of those that went through.
 
@@ -185,7 +185,7 @@ def _sort(gain, transmitted, n, steps, reflected_places, through_places):
     return np.int64(ends & _LOW_HALF), np.int64(ends >> _HALF_WORD)
 
 
-@kernel
+@stage
 def _gather(work, n, places, count, queue, start, first):
     for field in range(first, work.shape[0]):
         source = work[field]
@@ -198,7 +198,7 @@ def _gather(work, n, places, count, queue, start, first):
                 row[i] = source[places[i]]
 
 
-@kernel
+@stage
 def _book(batch, start, count, ledger, entry):
     for c in range(ledger.shape[1]):
         weight = batch[WEIGHT + c][start : start + count]
@@ -208,7 +208,7 @@ def _book(batch, start, count, ledger, entry):
         ledger[entry, c] += total
 
 
-@kernel
+@stage
 def _book_direct(work, places, count, ledger):
     for c in range(ledger.shape[1]):
         weight = work[WEIGHT + c]
@@ -218,13 +218,13 @@ def _book_direct(work, places, count, ledger):
         ledger[REFLECTED_DIRECT, c] += total
 
 
-@kernel
+@stage
 def _count_order(order, n):
     for i in range(n):
         order[i] += 1.0
 
 
-@kernel
+@stage
 def _cut(queues, filled, ledger):
     for q in range(filled.shape[0]):
         for c in range(ledger.shape[1]):
@@ -236,7 +236,7 @@ def _cut(queues, filled, ledger):
         filled[q] = 0
 
 
-@kernel
+@stage
 def _leave(side, exits, n_exits, cells, threshold):
     if n_exits[side] >= threshold:
         tally.flush(side, exits[side], n_exits[side], cells)

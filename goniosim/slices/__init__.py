@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .._jit import kernel, scalar
+from .._jit import scalar, stage
 from . import classic, half
 from .grid import HALF_PI
 
@@ -25,7 +25,7 @@ CLASSIC, HALF = range(2)
 PARAMETRIZATIONS = {"classic": (CLASSIC, classic), "half": (HALF, half)}
 
 
-@kernel
+@stage
 def cells_of(parametrization, x, y, z, n, rows, columns, light, cell):
     """Cell numbers ``row * columns + column`` of ``n`` view vectors (minus x, minus y, z)."""
     if parametrization == CLASSIC:

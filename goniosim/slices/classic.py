@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from .._jit import kernel, scalar
+from .._jit import scalar, stage
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
 
-@kernel
+@stage
 def cells_of(x, y, z, n, rows, columns, cell):
     """Cell numbers of ``n`` view vectors (minus x, minus y, z)."""
     for i in range(n):

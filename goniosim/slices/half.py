@@ -13,7 +13,7 @@ from functools import cache
 
 import numpy as np
 
-from .._jit import kernel, scalar
+from .._jit import scalar, stage
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
@@ -23,7 +23,7 @@ _NODES = 10
 _NODES_CUT = 96
 
 
-@kernel
+@stage
 def cells_of(x, y, z, n, rows, columns, light, cell):
     """Cell numbers of ``n`` view vectors (minus x, minus y, z), seen from ``light``."""
     lx = light[0]

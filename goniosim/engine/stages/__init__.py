@@ -5,7 +5,7 @@ variants share one) and ``scatter`` (a batch of rays meets the interface). A new
 file, a line in `LOWER` and a line in `scatter`.
 """
 
-from ..._jit import kernel
+from ..._jit import stage
 from . import lambert, rough_conductor, rough_dielectric, smooth_conductor, smooth_dielectric
 
 ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR, LAMBERT = range(5)
@@ -41,7 +41,7 @@ def lower(interface, index_above):
     return (rough if alpha > 0.0 else smooth), alpha, eta, spectral
 
 
-@kernel
+@stage
 def scatter(kind, batch, n, alpha, eta, spectral, key, scratch, ledger):
     """Let the first ``n`` rays of ``batch`` meet an interface of the given kind.
 

@@ -4,7 +4,7 @@ Three short loops instead of one long one: the chain of operations in each is sh
 processor to work on several iterations at once.
 """
 
-from ..._jit import kernel
+from ..._jit import stage
 from ...optics.elementary import sincos_turns
 from ...optics.ggx import sample_visible_normal
 from ...optics.random import derive_key, uniform
@@ -13,7 +13,7 @@ from ..layout import COSINE, FACET_X, FACET_Y, FACET_Z, X, Y, Z
 FACET_AZIMUTH, FACET_HEIGHT = 0, 1
 
 
-@kernel
+@stage
 def meet_facets(batch, n, alpha, key, scratch):
     """Sample a visible facet for each of ``n`` rays: its normal and the cosine at it."""
     u_x = scratch[FACET_X]
@@ -23,7 +23,7 @@ def meet_facets(batch, n, alpha, key, scratch):
     _sample(batch[X], batch[Y], batch[Z], n, alpha, u_x, u_y, u_z, scratch[COSINE])
 
 
-@kernel
+@stage
 def _draw(n, key, cosines, sines, heights):
     azimuth_key = derive_key(key, FACET_AZIMUTH)
     height_key = derive_key(key, FACET_HEIGHT)
@@ -32,7 +32,7 @@ def _draw(n, key, cosines, sines, heights):
         heights[i] = uniform(height_key, i)
 
 
-@kernel
+@stage
 def _sample(x, y, z, n, alpha, fx, fy, fz, cosines):
     for i in range(n):
         vx = x[i]

@@ -1,6 +1,6 @@
 """Lambertian base: reflects rho, in a direction that has forgotten where the ray came from."""
 
-from ..._jit import kernel
+from ..._jit import stage
 from ...optics.lambert import sample_cosine
 from ...optics.random import derive_key, uniform
 from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, X, Y, Z
@@ -13,7 +13,7 @@ def lower(interface, index_above):
     return 0.0, 1.0, [interface.rho_rgb]
 
 
-@kernel
+@stage
 def scatter(batch, n, spectral, key, scratch, ledger):
     """Scatter ``n`` rays; ``spectral`` holds the reflectance rho of every channel."""
     _sample(batch[X], batch[Y], batch[Z], n, key, scratch[GAIN], scratch[TRANSMITTED])
@@ -29,7 +29,7 @@ def scatter(batch, n, spectral, key, scratch, ledger):
         ledger[ABSORBED_BASE, c] += absorbed
 
 
-@kernel
+@stage
 def _sample(x, y, z, n, key, gain, transmitted):
     height_key = derive_key(key, 0)
     azimuth_key = derive_key(key, 1)

@@ -1,10 +1,10 @@
 """Masking of the scattered ray by the microsurface it leaves."""
 
-from ..._jit import kernel
+from ..._jit import stage
 from ..layout import GAIN, LOST_REFLECTION, LOST_TRANSMISSION, TRANSMITTED, WEIGHT
 
 
-@kernel
+@stage
 def apply_masking(batch, n, scratch, ledger):
     """Multiply all weights by the gain; book the rest as lost, by reflection or transmission."""
     gain = scratch[GAIN]
@@ -13,7 +13,7 @@ def apply_masking(batch, n, scratch, ledger):
         _mask_channel(batch[WEIGHT + c], n, gain, transmitted, ledger, c)
 
 
-@kernel
+@stage
 def _mask_channel(weight, n, gain, transmitted, ledger, c):
     lost = 0.0
     lost_in_transmission = 0.0

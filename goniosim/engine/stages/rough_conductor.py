@@ -1,6 +1,6 @@
 """Rough opaque conductor: GGX facets, Fresnel reflectance per channel, single scattering."""
 
-from ..._jit import kernel
+from ..._jit import stage
 from ...optics.ggx import smith_g1
 from ..layout import COSINE, FACET_X, FACET_Y, FACET_Z, GAIN, TRANSMITTED, X, Y, Z
 from .facets import meet_facets
@@ -8,7 +8,7 @@ from .masking import apply_masking
 from .smooth_conductor import absorb_in_conductor
 
 
-@kernel
+@stage
 def scatter(batch, n, alpha, spectral, key, scratch, ledger):
     """Scatter ``n`` rays; ``spectral`` holds the relative eta and kappa of every channel."""
     meet_facets(batch, n, alpha, key, scratch)
@@ -29,7 +29,7 @@ def scatter(batch, n, alpha, spectral, key, scratch, ledger):
     apply_masking(batch, n, scratch, ledger)
 
 
-@kernel
+@stage
 def _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, gain, transmitted):
     for i in range(n):
         twice = 2.0 * cosines[i]

@@ -1,6 +1,6 @@
 """Rough dielectric interface: GGX facets, Fresnel coin, single scattering (Walter et al. 2007)."""
 
-from ..._jit import kernel
+from ..._jit import stage
 from ...optics.fresnel import fresnel_dielectric
 from ...optics.ggx import smith_g1
 from ...optics.random import derive_key, uniform
@@ -10,7 +10,7 @@ from .masking import apply_masking
 from .smooth_dielectric import COIN
 
 
-@kernel
+@stage
 def scatter(batch, n, alpha, eta, key, scratch, ledger):
     """Scatter ``n`` rays; ``eta`` is the index of the far side relative to the side of arrival."""
     meet_facets(batch, n, alpha, key, scratch)
@@ -32,7 +32,7 @@ def scatter(batch, n, alpha, eta, key, scratch, ledger):
     apply_masking(batch, n, scratch, ledger)
 
 
-@kernel
+@stage
 def _reflect_or_refract(x, y, z, n, alpha, eta, coin_key, fx, fy, fz, cosines, gain, transmitted):
     inverse_eta = 1.0 / eta
     for i in range(n):

@@ -1,6 +1,6 @@
 """Perfectly smooth opaque conductor: Fresnel reflectance per channel, mirror direction."""
 
-from ..._jit import kernel
+from ..._jit import stage
 from ...optics.fresnel import fresnel_conductor
 from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, Z
 
@@ -14,7 +14,7 @@ def lower(interface, index_above):
     return interface.alpha, 1.0, [eta, kappa]
 
 
-@kernel
+@stage
 def scatter(batch, n, spectral, scratch, ledger):
     """Scatter ``n`` rays; ``spectral`` holds the relative eta and kappa of every channel."""
     gain = scratch[GAIN]
@@ -25,7 +25,7 @@ def scatter(batch, n, spectral, scratch, ledger):
     absorb_in_conductor(batch, n, spectral, batch[Z], ledger)
 
 
-@kernel
+@stage
 def absorb_in_conductor(batch, n, spectral, cosines, ledger):
     """Multiply the weights by the Fresnel reflectance and book what is absorbed."""
     for c in range(spectral.shape[1]):

@@ -1,6 +1,6 @@
 """Perfectly smooth dielectric interface: Fresnel coin, mirror direction or Snell's law."""
 
-from ..._jit import kernel
+from ..._jit import stage
 from ...optics.fresnel import fresnel_dielectric
 from ...optics.random import derive_key, uniform
 from ..layout import GAIN, TRANSMITTED, X, Y, Z
@@ -14,7 +14,7 @@ def lower(interface, index_above):
     return interface.alpha, interface.eta / index_above, []
 
 
-@kernel
+@stage
 def scatter(batch, n, eta, key, scratch):
     """Scatter ``n`` rays; ``eta`` is the index of the far side relative to the side of arrival."""
     x = batch[X]

@@ -1,6 +1,6 @@
 """What happens to rays between two interfaces: absorption, and Russian roulette on faint rays."""
 
-from ..._jit import kernel
+from ..._jit import stage
 from ...optics.medium import path_length, transmittance
 from ...optics.random import derive_key, uniform
 from ..layout import ABSORBED_MEDIA, LOST_ROULETTE, WEIGHT, Z
@@ -12,7 +12,7 @@ ROULETTE_WEIGHT = 1e-3
 ROULETTE = 3
 
 
-@kernel
+@stage
 def absorb(batch, n, tau, path, ledger):
     """Attenuate ``n`` rays that have crossed a medium of optical depths ``tau[channel]``.
 
@@ -24,13 +24,13 @@ def absorb(batch, n, tau, path, ledger):
             ledger[ABSORBED_MEDIA, c] += _absorb_channel(batch[WEIGHT + c], n, tau[c], path)
 
 
-@kernel
+@stage
 def _path_lengths(cosines, n, path):
     for i in range(n):
         path[i] = path_length(cosines[i])
 
 
-@kernel
+@stage
 def _absorb_channel(weight, n, tau, path):
     absorbed = 0.0
     for i in range(n):
@@ -41,7 +41,7 @@ def _absorb_channel(weight, n, tau, path):
     return absorbed
 
 
-@kernel
+@stage
 def roulette(batch, n, channels, brightest, key, ledger):
     """Play Russian roulette with the faint ones among ``n`` rays; the losers' weights become 0.
 
@@ -60,7 +60,7 @@ def roulette(batch, n, channels, brightest, key, ledger):
     return True
 
 
-@kernel
+@stage
 def _any_faint(batch, n, channels, brightest):
     weight = batch[WEIGHT]
     for i in range(n):
@@ -75,7 +75,7 @@ def _any_faint(batch, n, channels, brightest):
     return faint > 0
 
 
-@kernel
+@stage
 def _rescale(weight, n, factor):
     lost = 0.0
     for i in range(n):
@@ -86,7 +86,7 @@ def _rescale(weight, n, factor):
     return lost
 
 
-@kernel
+@stage
 def drop_dead(gain, n, factor):
     """Zero the gain of the rays whose roulette ``factor`` is zero."""
     for i in range(n):
