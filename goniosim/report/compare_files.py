@@ -31,7 +31,10 @@ def provenance(subcells):
 
 
 def write_csv(path, rows, origin):
-    """Write ``errors.csv``: comments with provenance and units, a header, one line per row.
+    """Write ``errors.csv``: a header and one line per row, nothing else, so that any tool reads it.
+
+    Units and provenance are columns of their own, after those of the errors: ``rmse_unit``,
+    ``albedo_unit``, ``angle_unit``, and the keys of ``origin``.
 
     Parameters
     ----------
@@ -42,14 +45,13 @@ def write_csv(path, rows, origin):
         From `provenance`.
     """
     stream = io.StringIO()
-    for name, value in origin.items():
-        stream.write(f"# {name}: {value}\n")
-    for name, (unit, meaning) in COLUMNS.items():
-        stream.write(f"# column {name}{f' [{unit}]' if unit else ''}: {meaning}\n")
-    writer = csv.DictWriter(stream, list(COLUMNS), lineterminator="\n")
+    units = {"rmse": "rmse", "albedo": "albedo_model", "angle": "theta_deg"}
+    same = {f"{kind}_unit": COLUMNS[column][0] for kind, column in units.items()}
+    same |= {name: value for name, value in origin.items() if name not in COLUMNS}
+    writer = csv.DictWriter(stream, [*COLUMNS, *same], lineterminator="\n")
     writer.writeheader()
     for row in rows:
-        writer.writerow({name: _shown(value) for name, value in row.items()})
+        writer.writerow({name: _shown(value) for name, value in row.items()} | same)
     _replace(path, stream.getvalue())
 
 
