@@ -105,13 +105,17 @@ def main():
     options = parser.parse_args()
     rays = int(options.rays)
 
-    runners = {"goniosim": lambda n, t: goniosim_rate(n, t, rays), "reference": lambda n, t: reference_rate(n, t, rays // 50)}
+    runners = {
+        "goniosim": lambda n, t: goniosim_rate(n, t, rays),
+        "reference": lambda n, t: reference_rate(n, t, rays // 50),
+    }
     if options.peer:
         runners["C++"] = lambda n, t: peer_rate(options.peer, n, t, rays // 5)
     for run in runners.values():
         run("slab", 0.0)  # compile, or load from the cache, before the clock starts
     print("million rays per CPU-second, one thread, analog estimator, RGB")
-    print(f"{'stack':10}{'theta':>6}" + "".join(f"{name:>12}" for name in runners) + f"{'x C++' if options.peer else '':>9}")
+    ratio_head = f"{'x C++':>9}" if options.peer else ""
+    print(f"{'stack':10}{'theta':>6}" + "".join(f"{name:>12}" for name in runners) + ratio_head)
     for name in LAYERS:
         for theta in ANGLES:
             best = dict.fromkeys(runners, 0.0)

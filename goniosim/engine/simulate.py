@@ -1,16 +1,14 @@
 """The driver: work units on threads, their tallies summed in a fixed order, results assembled."""
 
-import platform
 import threading
 import time
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
-from importlib.metadata import version
 
 import numpy as np
 
 from ..errors import StoppedError
+from ..provenance import provenance
 from ..result import Cost, Result
 from ..scene import CHANNELS, effects, parse_scene
 from . import estimate
@@ -79,7 +77,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
         audit=estimate.audit(plan, run.ledgers, run.unit_rays, found["reflection/direct"]),
         cost=run.cost(),
         effects={effect.name: effect.active for effect in effects(scene)},
-        provenance=_provenance(threads),
+        provenance=provenance(threads),
     )
 
 
@@ -200,15 +198,3 @@ class _Run:
             cpu_seconds=np.array(cpu_seconds),
             error={name: np.array([error[name] for error in errors]) for name in names},
         )
-
-
-def _provenance(threads):
-    return {
-        "created_utc": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "goniosim_version": version("goniosim"),
-        "numba_version": version("numba"),
-        "numpy_version": version("numpy"),
-        "python_version": platform.python_version(),
-        "processor": platform.processor() or platform.machine(),
-        "threads": str(threads),
-    }

@@ -4,30 +4,19 @@ import csv
 import io
 import json
 import os
-import platform
-from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 
 from ..compare.integrate import available_threads
 from ..compare.rows import COLUMNS
 from ..errors import OutputError
+from ..provenance import provenance
 
 FILETYPE = "goniosim-errors"
 
 
-def provenance(subcells):
+def origin_of(subcells):
     """Who computed the errors, when and with what, as a dict of str to str."""
-    return {
-        "created_utc": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "goniosim_version": version("goniosim"),
-        "numba_version": version("numba"),
-        "numpy_version": version("numpy"),
-        "python_version": platform.python_version(),
-        "processor": platform.processor() or platform.machine(),
-        "threads": str(available_threads()),
-        "subcells": str(subcells),
-    }
+    return {**provenance(available_threads()), "subcells": str(subcells)}
 
 
 def write_csv(path, rows, origin):
@@ -42,7 +31,7 @@ def write_csv(path, rows, origin):
     rows : list of dict
         With the keys of `goniosim.compare.rows.COLUMNS`.
     origin : dict of str to str
-        From `provenance`.
+        From `origin_of`.
     """
     stream = io.StringIO()
     units = {"rmse": "rmse", "albedo": "albedo_model", "angle": "theta_deg"}

@@ -66,7 +66,7 @@ class Report:
         self._request = request
         self._subcells = subcells
         self._summaries = []
-        self._origin = compare_files.provenance(subcells)
+        self._origin = compare_files.origin_of(subcells)
         try:
             (folder / FIGURES).mkdir(parents=True, exist_ok=True)
         except OSError as error:

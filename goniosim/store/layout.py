@@ -118,7 +118,12 @@ ATTRIBUTES = (
     Attribute("/", "goniosim_version", "text", "version of the program that wrote the file"),
     Attribute("/", "created_utc", "text", "time of the simulation, ISO 8601"),
     Attribute("/", "config_yaml", "text", "the simulated scene, complete with defaults and overrides"),
-    Attribute("/", "config_hash", "text", "fingerprint of all that determines the numbers (not the name, not the threads): SHA-256, hexadecimal"),
+    Attribute(
+        "/",
+        "config_hash",
+        "text",
+        "fingerprint of all that determines the numbers (not the name, not the threads): SHA-256, hexadecimal",
+    ),
     Attribute("/", "seed", "uint64", "seed of the random numbers"),
     Attribute("/", "status", "text", "`complete`, or `partial` after an interruption"),
     Attribute("/", "name", "text", "name of the material"),

@@ -8,7 +8,7 @@ import numpy as np
 from goniosim.errors import OutputError
 from goniosim.store import userblock
 from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCALES, SCHEMA_VERSION, describe
-from goniosim.store.output import reserve_output, rescue
+from goniosim.store.output import rescue, reserve_output
 
 # Any HDF5 since 1.10 (2016) can read this format, and the bytes do not depend on the installed one.
 _FORMAT = ("v110", "v110")

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from reference.closed_forms import fresnel_dielectric, refracted_cosine
-from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 import goniosim
 from goniosim.compare.measures import rmse
+from reference.closed_forms import fresnel_dielectric, refracted_cosine
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 
 def compare(scene, models, **simulation):

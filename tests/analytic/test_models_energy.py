@@ -4,6 +4,12 @@ import math
 
 import numpy as np
 import pytest
+
+from goniosim.models import MODELS, evaluate_model, prepare
+from goniosim.models.albedo import WHITE, directional_albedo
+from goniosim.models.belcour18_symmetric import MODEL as SYMMETRIC
+from goniosim.models.belcour_lobes import Options, statistics
+from goniosim.models.stack import CONDUCTOR, DIELECTRIC
 from reference.closed_forms import (
     WHITE_GGX_ALPHA_1_NORMAL,
     fresnel_conductor,
@@ -16,12 +22,6 @@ from reference.closed_forms import (
     smooth_slab,
 )
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
-
-from goniosim.models import MODELS, evaluate_model, prepare
-from goniosim.models.albedo import WHITE, directional_albedo
-from goniosim.models.belcour18_symmetric import MODEL as SYMMETRIC
-from goniosim.models.belcour_lobes import Options, statistics
-from goniosim.models.stack import CONDUCTOR, DIELECTRIC
 
 MIRROR = conductor(1.0, 1e6, 0.2)
 RECIPROCAL = ("ww09", "elek10", "bati19_ww", "belcour18_symmetric")

@@ -3,10 +3,10 @@
 import math
 
 import pytest
-from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 from goniosim.models import evaluate_model
 from goniosim.models.belcour_lobes import Options, statistics
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 
 def _statistics(layers, theta_deg, scale="paper", jacobian="published"):

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
-from synthetic import make_result
 
 from goniosim.compare.rows import COLUMNS
 from goniosim.scene import parse_scene
 from goniosim.store import layout, open_result, userblock, write_result
+from synthetic import make_result
 
 METAL = """\
 material:

@@ -1,10 +1,10 @@
 """Every way in which a command can fail has its message and its exit code."""
 
 import pytest
-from synthetic import make_result
 
 from goniosim import errors
 from goniosim.store import write_result
+from synthetic import make_result
 
 
 def _one_line(err, *words):

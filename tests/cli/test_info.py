@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 from matplotlib.image import imread
-from synthetic import make_result
 
 from goniosim.store import write_result
+from synthetic import make_result
 
 
 @pytest.fixture

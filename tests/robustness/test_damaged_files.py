@@ -7,10 +7,10 @@ import zlib
 
 import h5py
 import pytest
-from synthetic import make_result
 
 from goniosim.errors import DamagedFileError, ForeignFileError, NewerSchemaError
 from goniosim.store import open_result, read_header, userblock, write_result
+from synthetic import make_result
 
 MAGIC = len(userblock.MAGIC)
 

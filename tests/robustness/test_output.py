@@ -9,10 +9,10 @@ import sys
 import textwrap
 
 import pytest
-from synthetic import make_result
 
 from goniosim.errors import OutputError
 from goniosim.store import open_result, reserve_output, write_result
+from synthetic import make_result
 
 
 @pytest.fixture

@@ -4,11 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 from goniosim.errors import ConfigError
 from goniosim.models import COMPONENTS, MODELS, describe_options, evaluate_model, prepare
 from goniosim.models.options import parse_options
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 PLASTIC = [dielectric(1.5, 0.05), medium([0.1, 0.2, 0.8]), lambert([0.1, 0.6, 0.1])]
 METAL = [dielectric(1.5, 0.05), medium([0.1, 0.2, 0.8]), conductor(1.2, [1.0, 0.01, 0.01], 0.2)]

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from reference.closed_forms import fresnel_conductor, fresnel_dielectric, ggx, smith_g1
-from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 from goniosim.models import evaluate_model
+from reference.closed_forms import fresnel_conductor, fresnel_dielectric, ggx, smith_g1
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 N = np.array([0.0, 0.0, 1.0])
 AIR = 1.0

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from matplotlib.image import imread
-from synthetic import make_result
 
 from goniosim.errors import OutputError, UnusableResultError
 from goniosim.report.figures import draw
+from synthetic import make_result
 
 
 def _result(**options):

@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from synthetic import make_result
 
 from goniosim.report import audit, cost, study, summary
+from synthetic import make_result
 
 
 @pytest.fixture

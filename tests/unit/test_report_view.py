@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from synthetic import make_result
 
 from goniosim.report import inplane, view
 from goniosim.result import Cells
 from goniosim.slices import slice_geometry
+from synthetic import make_result
 
 THETA = 40.0
 

@@ -6,11 +6,11 @@ import time
 import h5py
 import numpy as np
 import pytest
-from synthetic import make_result
 
 from goniosim.result import AUDIT_ENTRIES
 from goniosim.store import open_result, predicted_size, read_header, write_result
 from goniosim.store.writer import encode
+from synthetic import make_result
 
 
 def assert_same(one, other, where="result"):

@@ -8,10 +8,10 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from synthetic import make_result
 
 from goniosim.result import AUDIT_ENTRIES
 from goniosim.store import layout, userblock, write_result
+from synthetic import make_result
 
 DOCUMENT = (Path(__file__).parents[2] / "data_schema.md").read_text(encoding="utf-8")
 
