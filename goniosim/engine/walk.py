@@ -81,8 +81,7 @@ def walk(stack, light, unit_key, budget, space, ledger, cells):
             q = 0
             gambled = False
         elif filled[q] == 0:
-            _leave(UP, exits, n_exits, cells, 1)
-            _leave(DOWN, exits, n_exits, cells, 1)
+            _leave(exits, n_exits, cells, 1)
             return True
         else:
             if state[LEFT] == 0:
@@ -121,17 +120,16 @@ def walk(stack, light, unit_key, budget, space, ledger, cells):
                     _gather(work, n, places[through], count, exits[UP], n_exits[UP], X)
                     _book(exits[UP], n_exits[UP], count, ledger, REFLECTED_INTERNAL)
                     n_exits[UP] += count
-                    _leave(UP, exits, n_exits, cells, batch_size)
             elif not up and k == n_interfaces - 1:
                 _gather(work, n, places[through], count, exits[DOWN], n_exits[DOWN], X)
                 _book(exits[DOWN], n_exits[DOWN], count, ledger, TRANSMITTED_OUT)
                 n_exits[DOWN] += count
-                _leave(DOWN, exits, n_exits, cells, batch_size)
             else:
                 target = 2 * (k - 1) + BELOW if up else 2 * (k + 1) + ABOVE
                 first = Z if forgets[target // 2] else X
                 _gather(work, n, places[through], count, queues[target], filled[target], first)
                 filled[target] += count
+        _leave(exits, n_exits, cells, batch_size)
     return False
 
 
@@ -237,7 +235,8 @@ def _cut(queues, filled, ledger):
 
 
 @stage
-def _leave(side, exits, n_exits, cells, threshold):
-    if n_exits[side] >= threshold:
-        tally.flush(side, exits[side], n_exits[side], cells)
-        n_exits[side] = 0
+def _leave(exits, n_exits, cells, threshold):
+    for way in range(2):
+        if n_exits[way] >= threshold:
+            tally.flush(way, exits[way], n_exits[way], cells)
+            n_exits[way] = 0
