@@ -6,11 +6,11 @@ the projected solid angle of the sub-cell. Bati et al. 2019 weight by the solid 
 energies, the cosine belongs into the weight.
 """
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from ..engine import available_cores
 from .grid import make_subcells
 from .kernels import fill_subcells, sum_cells
 
@@ -18,14 +18,9 @@ from .kernels import fill_subcells, sum_cells
 BLOCK = 4096
 
 
-def available_threads():
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def make_pool():
     """Threads for the functions of this package; a context manager."""
-    return ThreadPoolExecutor(available_threads(), thread_name_prefix="compare")
+    return ThreadPoolExecutor(available_cores(), thread_name_prefix="compare")
 
 
 def integrate(prepared, grid, n, pool, numbers=None):
@@ -70,7 +65,7 @@ def integrate(prepared, grid, n, pool, numbers=None):
             sum_cells(values, weight, n * n, sums, spread[start : start + step])
             energy[:, start : start + step] = sums
 
-    workers = available_threads()
+    workers = available_cores()
     for _ in pool.map(work, [starts[w::workers] for w in range(workers)]):
         pass
     return energy, spread

@@ -10,10 +10,11 @@ import math
 
 import numpy as np
 
+from ..engine import available_cores
 from ..optics.elementary import TWO_PI
 from ..slices import PARAMETRIZATIONS
 from ..slices.grid import HALF_PI
-from .integrate import BLOCK, available_threads, integrate
+from .integrate import BLOCK, integrate
 from .kernels import fill_rectangles, sum_cells
 
 # Cells with a larger spread of the values at their sub-cells are suspicious.
@@ -176,7 +177,7 @@ def _rule(prepared, grid, rectangles, pool):
             sum_cells(values, weight, per_cell, sums, np.empty(len(part)))
             energy[:, start : start + step] = sums
 
-    workers = available_threads()
+    workers = available_cores()
     for _ in pool.map(work, [starts[w::workers] for w in range(workers)]):
         pass
     return energy

@@ -6,8 +6,8 @@ import json
 import os
 from pathlib import Path
 
-from ..compare.integrate import available_threads
 from ..compare.rows import COLUMNS
+from ..engine import available_cores
 from ..errors import OutputError
 from ..provenance import provenance
 
@@ -16,7 +16,7 @@ FILETYPE = "goniosim-errors"
 
 def origin_of(subcells):
     """Who computed the errors, when and with what, as a dict of str to str."""
-    return {**provenance(available_threads()), "subcells": str(subcells)}
+    return {**provenance(available_cores()), "subcells": str(subcells)}
 
 
 def write_csv(path, rows, origin):
