@@ -24,6 +24,7 @@ SLICES = ["classic", "half"]
 
 
 def table(title, head, rows):
+    """Print a table in Markdown."""
     print(f"\n### {title}\n\n| {' | '.join(head)} |\n|{'---|' * len(head)}")
     for row in rows:
         print(f"| {' | '.join(str(cell) for cell in row)} |", flush=True)
@@ -86,6 +87,7 @@ def chi_square_rows(rays):
 
 
 def integration_rows():
+    """Yield rows on the direct reflection: as integrated by the engine and by an independent quadrature."""
     for slices in SLICES:
         for alpha in ALPHAS:
             density = closed_forms.reflection_density(alpha, 1.45 + 1.0j)
@@ -97,6 +99,7 @@ def integration_rows():
 
 
 def error_bar_rows(rays, seeds):
+    """Yield rows on error bars: scatter over seeds against what is stated."""
     cases = {
         "plastic, classic, 60 deg": (
             [dielectric(1.5), medium(0.2), lambert(0.5)], 60, "classic",
@@ -143,6 +146,7 @@ def energy_rows(rays):
 
 
 def reciprocity_rows(rays):
+    """Yield rows on f(l, v) = f(v, l)."""
     thetas = [0.5, 15.5, 30.5, 45.5, 60.5, 75.5]
     metal = [dielectric(1.5, 0.2), medium(0.2), conductor(1.45, 1.0, 0.2)]
     slab = [dielectric(1.5, 0.2), medium(0.2), dielectric(1.0, 0.2)]
@@ -157,6 +161,7 @@ def reciprocity_rows(rays):
 
 
 def tracer_rows(rays, tracer_rays):
+    """Yield rows on the agreement with the reference tracer."""
     deep = [
         dielectric(1.5, 0.2), medium([0.05, 0.1, 0.4]), dielectric(1.3), medium([0.2, 0.0, 0.1]),
         dielectric(1.7, 0.05),
@@ -173,6 +178,7 @@ def tracer_rows(rays, tracer_rays):
 
 
 def main():
+    """Print all tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a tenth of the rays")
     scale = 0.1 if parser.parse_args().quick else 1.0

@@ -1,4 +1,4 @@
-"""`goniosim check`: is the scene right, what does it call for, what will it cost?"""
+"""`goniosim check`: whether the scene is right, what it calls for, what it will cost."""
 
 import click
 
@@ -13,8 +13,9 @@ from .policy import debug_option
 def check(config, overrides):
     """Validate CONFIG and predict time and file size.
 
-    CONFIG is a scene or a study file. The time is predicted from a short probe of the speed here."""
-    from goniosim.report import forecast
+    CONFIG is a scene or a study file. The time is predicted from a short probe of the speed here.
+    """
+    from goniosim.report.simulation import forecast
     from goniosim.scene import load_scenes
 
     scenes = load_scenes(config, overrides)

@@ -43,7 +43,7 @@ def compare(results, models, output, settings, subcells, allow_partial, quiet):
     """
     from goniosim.compare.comparison import result_files
     from goniosim.compare.variants import check_request
-    from goniosim.report import compare_report
+    from goniosim.report.comparison import report as compare_report
 
     request = check_request(_names(models), _options(settings))
     paths = result_files(results)

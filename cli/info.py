@@ -12,11 +12,13 @@ from .policy import debug_option
 def info(file, as_json):
     """Show what the result FILE holds.
 
-    Status, albedo of each component, energy audit, cost, effects simulated, origin."""
+    Status, albedo of each component, energy audit, cost, effects simulated, origin.
+    """
     import json
     import os
 
-    from goniosim.report import summary, text
+    from goniosim.report import text
+    from goniosim.report.simulation import summary
     from goniosim.store import open_result
 
     result = open_result(file)

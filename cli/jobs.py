@@ -39,7 +39,7 @@ class Job:
 
     def reserve(self):
         """Make sure that the file can be written, and keep room for it."""
-        from goniosim.report.forecast import file_size
+        from goniosim.report.simulation.forecast import file_size
         from goniosim.store import reserve_output
 
         return reserve_output(self.path, file_size(self.scene))
@@ -88,14 +88,12 @@ def make_folder(folder):
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(
-            f"{folder}: the folder cannot be created: {error.strerror}; choose another place"
-        ) from error
+        raise OutputError(f"{folder}: the folder cannot be created: {error.strerror}; choose another place") from error
 
 
 def run(jobs, progress, signals, verbose):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
-    from goniosim.report.forecast import effects_text
+    from goniosim.report.simulation.forecast import effects_text
     from goniosim.report.text import duration
     from goniosim.store import write_result
 
@@ -118,9 +116,7 @@ def run(jobs, progress, signals, verbose):
             write_result(result, job.path, reservation=signals.reservation)
         if result.status == "partial":
             percent = 100.0 * result.rays.sum() / job.rays
-            progress.note(
-                f"stopped by {signals.name}: {job.path} holds {percent:.3g} % of the rays (partial)"
-            )
+            progress.note(f"stopped by {signals.name}: {job.path} holds {percent:.3g} % of the rays (partial)")
         yield job, result
 
 

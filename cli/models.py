@@ -9,6 +9,6 @@ from .policy import debug_option
 @debug_option
 def models():
     """List the models: what they apply to, options, nanoseconds per evaluation, citation."""
-    from goniosim.report.compare_models import description
+    from goniosim.report.models import description
 
     click.echo(description())

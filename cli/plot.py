@@ -16,9 +16,7 @@ from .policy import debug_option
     show_default=True,
     help="File format.",
 )
-@click.option(
-    "--theta", type=float, multiple=True, help="Only this incident direction, in degrees; may be repeated."
-)
+@click.option("--theta", type=float, multiple=True, help="Only this incident direction, in degrees; may be repeated.")
 @debug_option
 def plot(file, output, suffix, theta):
     """Draw the slices in the result FILE.
@@ -28,7 +26,7 @@ def plot(file, output, suffix, theta):
     """
     from pathlib import Path
 
-    from goniosim.report.figures import draw
+    from goniosim.report.simulation.figures import draw
     from goniosim.store import open_result
 
     result = open_result(file)

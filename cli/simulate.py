@@ -32,9 +32,9 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
     A study writes one file per material into a folder, and leaves alone those that an earlier run has
     finished. Ctrl-C stops within two seconds and keeps what was gathered, marked as partial.
     """
-    from goniosim.report import study
     from goniosim.report.progress import make_progress
-    from goniosim.report.summary import summary
+    from goniosim.report.simulation import study
+    from goniosim.report.simulation.summary import summary
     from goniosim.scene import is_study, load_scenes, study_name
 
     from . import jobs

@@ -43,7 +43,7 @@ def source_hash():
     digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
     for folder in _COMPILED:
         for path in sorted((_PACKAGE / folder).rglob("*.py")):
-            digest.update(path.name.encode())
+            digest.update(str(path.relative_to(_PACKAGE)).encode())
             digest.update(path.read_bytes())
     digest.update(Path(__file__).read_bytes())
     return digest.hexdigest()[:16]

@@ -124,9 +124,7 @@ def check_usable(result, allow_partial):
             f"{result.name}: the simulation was interrupted (partial); finish it, or allow partial results"
         )
     if not (result.rays > 0).all():
-        raise UnusableResultError(
-            f"{result.name}: has incident directions without a single ray; simulate it again"
-        )
+        raise UnusableResultError(f"{result.name}: has incident directions without a single ray; simulate it again")
 
 
 def result_files(path):

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ..engine import available_cores
+from ..cores import available_cores
 from .grid import make_subcells
 from .kernels import fill_subcells, sum_cells
 
@@ -57,8 +57,19 @@ def integrate(prepared, grid, n, pool, numbers=None):
             x, y, z, weight = np.empty((4, len(part) * n * n))
             values = np.empty((len(energy), len(x)))
             fill_subcells(
-                grid.code, light, part, grid.half_columns, n, subcells.row, subcells.column,
-                subcells.row_integral, subcells.column_integral, x, y, z, weight,
+                grid.code,
+                light,
+                part,
+                grid.half_columns,
+                n,
+                subcells.row,
+                subcells.column,
+                subcells.row_integral,
+                subcells.column_integral,
+                x,
+                y,
+                z,
+                weight,
             )
             prepared.kernel(prepared.tables, prepared.light, x, y, z, values)
             sums = np.empty((len(energy), len(part)))

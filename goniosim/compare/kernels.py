@@ -7,9 +7,7 @@ from ..slices import CLASSIC, view_direction
 
 
 @kernel
-def fill_subcells(
-    code, light, numbers, half_columns, n, row, column, row_integral, column_integral, x, y, z, weight
-):
+def fill_subcells(code, light, numbers, half_columns, n, row, column, row_integral, column_integral, x, y, z, weight):
     """View directions at the centres of all sub-cells of some cells, and projected solid angles.
 
     ``numbers`` are those of `goniosim.compare.grid.Grid.numbers`; each cell fills n * n consecutive

@@ -153,9 +153,7 @@ def compare_material(result, request, subcells, pool, progress=None):
             slices[variant.label, part] = _component(found, result.cells)
         if progress is not None:
             progress(done + 1, len(variants))
-    return MaterialComparison(
-        result, scene, subcells, variants, not_applicable, components, compared, slices
-    )
+    return MaterialComparison(result, scene, subcells, variants, not_applicable, components, compared, slices)
 
 
 def reference(result, component):

@@ -103,7 +103,7 @@ def measure(model, reference, stderr, cells):
         for m, slices in enumerate(zip(model, reference, stderr, strict=True))
     ]
     names = [field.name for field in fields(Measures)]
-    return Measures(**{name: np.stack(values) for name, values in zip(names, zip(*rows), strict=True)})
+    return Measures(**{name: np.stack(values) for name, values in zip(names, zip(*rows, strict=True), strict=True)})
 
 
 def _one_direction(model, reference, stderr, size):

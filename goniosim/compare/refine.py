@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from ..engine import available_cores
+from ..cores import available_cores
 from ..optics.elementary import TWO_PI
 from ..slices import PARAMETRIZATIONS
 from ..slices.grid import HALF_PI

@@ -1,6 +1,6 @@
 """The Monte Carlo engine: `simulate`, and `probe` for a short trial."""
 
-from .probe import Probe, available_cores, probe, warm_up
+from .probe import Probe, probe, warm_up
 from .simulate import simulate
 
-__all__ = ["Probe", "available_cores", "probe", "simulate", "warm_up"]
+__all__ = ["Probe", "probe", "simulate", "warm_up"]

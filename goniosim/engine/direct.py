@@ -98,7 +98,7 @@ def _reflectance(kind, eta, spectral, cosine):
 
 @stage
 def _fresnel(kind, eta, spectral, cosine):
-    if kind == ROUGH_DIELECTRIC or kind == SMOOTH_DIELECTRIC:
+    if kind in (ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC):
         reflectance, _ = fresnel_dielectric(cosine, eta)
         return reflectance
     return fresnel_conductor(cosine, spectral[0], spectral[1])
@@ -120,9 +120,7 @@ def _integrate_row(surface, peak, scales, row, energy, error):
         relative = ROUGH_TOLERANCE
         absolute = ABSOLUTE_TOLERANCE
         for _ in range(2):
-            value, accuracy = _integrate_cell(
-                surface, peak, scales, (u, phi, d_u, width), relative, absolute, todo
-            )
+            value, accuracy = _integrate_cell(surface, peak, scales, (u, phi, d_u, width), relative, absolute, todo)
             if accuracy <= RELATIVE_TOLERANCE * value + ABSOLUTE_TOLERANCE:
                 break
             # Relative to the cell and not to its parts: for very narrow lobes at grazing angles the

@@ -69,14 +69,17 @@ class Plan:
 
     @property
     def n_distinct(self):
+        """Channels that are traced."""
         return len(self.distinct)
 
     @property
     def n_slots(self):
+        """Histograms, over both ways out."""
         return int(self.slots[:, 1].sum())
 
     @property
     def parametrization(self):
+        """Number of the parametrization in compiled code."""
         return PARAMETRIZATIONS[self.parametrization_name][0]
 
     @property
@@ -161,6 +164,4 @@ def _slots(n_interfaces, transmits, orders):
         counts[UP] = max(orders, 1)
     if transmits:
         counts[DOWN] = orders + 1 if orders else 1
-    return np.array(
-        [[0, counts[UP], FIRST_ORDER[UP]], [counts[UP], counts[DOWN], FIRST_ORDER[DOWN]]], dtype=np.int64
-    )
+    return np.array([[0, counts[UP], FIRST_ORDER[UP]], [counts[UP], counts[DOWN], FIRST_ORDER[DOWN]]], dtype=np.int64)

@@ -1,22 +1,15 @@
 """What this machine can do with a scene: compile its kernels, and trace it for a moment."""
 
-import os
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
+from ..cores import available_cores
 from .plan import Plan, make_plan
 from .unit import Tally, Workspace, unit_key
 
 _RAYS_PER_UNIT = 1 << 13
-
-
-def available_cores():
-    """Cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def warm_up(scene):

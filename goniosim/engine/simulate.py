@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..cores import available_cores
 from ..errors import StoppedError
 from ..provenance import provenance
 from ..result import Cost, Result
@@ -15,7 +16,7 @@ from . import estimate
 from .direct import direct_reflection
 from .layout import DOWN, UP
 from .plan import make_plan
-from .probe import available_cores, warm_up
+from .probe import warm_up
 from .schedule import Schedule
 from .unit import Tally, Workspace, unit_key
 

@@ -30,26 +30,6 @@ def masking_option():
     )
 
 
-def conductor_index_option():
-    """What the index of a conductor in the scene means in the Weidlich-Wilkie family."""
-    return option(
-        ("relative", "absolute"),
-        "index of a conductor: relative to the medium above it, or as it stands in the scene",
-    )
-
-
-def t_roughness_option():
-    """Which interface gives the GGX width to the G of the term for total internal reflection."""
-    return option(
-        ("outer", "inner"), "GGX width in the G of t: that of the upper or of the lower interface"
-    )
-
-
-def t_masking_option():
-    """Form of the G of the term for total internal reflection."""
-    return option(("smith", "vgroove"), "form of the G of t: that of the lobes, or V-grooves of 1967")
-
-
 def describe(options):
     """List the options of an options dataclass.
 

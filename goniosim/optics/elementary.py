@@ -64,10 +64,12 @@ def sincos_turns(u):
     quadrant = math.floor(4.0 * u + 0.5)
     x = (4.0 * u - quadrant) * _HALF_PI
     z = x * x
+    # fmt: off
     s = x * (1.0 + z * (-1.0 / 6.0 + z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362880.0
         + z * (-1.0 / 39916800.0 + z * (1.0 / 6227020800.0 - z / 1307674368000.0)))))))
     c = 1.0 + z * (-0.5 + z * (1.0 / 24.0 + z * (-1.0 / 720.0 + z * (1.0 / 40320.0
         + z * (-1.0 / 3628800.0 + z * (1.0 / 479001600.0 - z / 87178291200.0))))))
+    # fmt: on
     odd = (quadrant == 1.0) | (quadrant == 3.0)
     sine = c if odd else s
     cosine = s if odd else c
@@ -82,9 +84,11 @@ def exp_nonpositive(x):
     y = max(x, -700.0)
     k = math.floor(y * _LOG2_E + 0.5)
     r = y - k * _LN_2
+    # fmt: off
     p = 1.0 + r * (1.0 + r * (1.0 / 2.0 + r * (1.0 / 6.0 + r * (1.0 / 24.0 + r * (1.0 / 120.0
         + r * (1.0 / 720.0 + r * (1.0 / 5040.0 + r * (1.0 / 40320.0 + r * (1.0 / 362880.0
         + r * (1.0 / 3628800.0 + r * (1.0 / 39916800.0 + r / 479001600.0)))))))))))
+    # fmt: on
     power = bits_to_float((float_to_bits(k + _INTEGER_IN_LOW_BITS) + np.uint64(1023)) << np.uint64(52))
     return p * power if x >= -700.0 else 0.0
 
@@ -97,8 +101,10 @@ def arctan2_first_quadrant(y, x):
     steep = low > _TAN_PI_8 * high
     t = (low - high if steep else low) / max(low + high if steep else high, 1e-300)
     z = t * t
+    # fmt: off
     p = t * (_A0 + z * (_A1 + z * (_A2 + z * (_A3 + z * (_A4 + z * (_A5 + z * (_A6 + z * (_A7
         + z * (_A8 + z * (_A9 + z * _A10))))))))))
+    # fmt: on
     p = p + _QUARTER_PI if steep else p
     return _HALF_PI - p if y > x else p
 

@@ -40,16 +40,16 @@ class Silent:
     """Shows nothing."""
 
     def begin(self, description):
-        pass
+        """Name the material whose rays come next."""
 
     def update(self, done_rays, total_rays):
-        pass
+        """Say how far this material has come."""
 
     def note(self, message):
-        pass
+        """Show a line of text."""
 
     def close(self):
-        pass
+        """Show nothing more."""
 
 
 class _Shown:
@@ -62,6 +62,7 @@ class _Shown:
         self.stream = stream
 
     def begin(self, description):
+        """Name the material whose rays come next."""
         self.earlier_rays = self.rays
         self.description = description
 
@@ -92,6 +93,7 @@ class Bar(_Shown):
         self._bar = None
 
     def begin(self, description):
+        """Name the material whose rays come next."""
         super().begin(description)
         self._try(self._show_description)
 
@@ -113,17 +115,20 @@ class Bar(_Shown):
             self._bar.set_description_str(f"{self.description}: ")
 
     def update(self, done_rays, total_rays):
+        """Say how far this material has come."""
         self.rays = self.earlier_rays + done_rays
         if self._bar is not None:
             self._try(self._bar.update, self.rays - self._bar.n)
 
     def note(self, message):
+        """Show a line of text."""
         if self._bar is None:
             self._try(print, message, file=self.stream, flush=True)
         else:
             self._try(self._bar.write, message, file=self.stream)
 
     def close(self):
+        """Show nothing more."""
         if self._bar is not None:
             self._try(self._bar.close)
 
@@ -147,12 +152,14 @@ class LogLines(_Shown):
         self._pace = FIRST_LINE
 
     def begin(self, description):
+        """Name the material whose rays come next."""
         super().begin(description)
         if self._started is None:
             self._started = self._clock()
             self._next_line = self._started + self._pace
 
     def update(self, done_rays, total_rays):
+        """Say how far this material has come."""
         self.rays = self.earlier_rays + done_rays
         now = self._clock()
         if now < self._next_line:
@@ -168,6 +175,7 @@ class LogLines(_Shown):
         self.note(line)
 
     def note(self, message):
+        """Show a line of text."""
         self._try(self._write, f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {message}\n")
 
     def _write(self, line):
@@ -175,4 +183,4 @@ class LogLines(_Shown):
         self.stream.flush()
 
     def close(self):
-        pass
+        """Show nothing more."""

@@ -54,8 +54,7 @@ def _structure_problems(node):
         return []
     kinds = [_kind(layer) for layer in layers.value]
     return [
-        _explain(locate(layers, place)[0], ("layers", *place), message)
-        for place, message in structure_mistakes(kinds)
+        _explain(locate(layers, place)[0], ("layers", *place), message) for place, message in structure_mistakes(kinds)
     ]
 
 
@@ -78,9 +77,7 @@ def _translate(root, detail):
     if kind == "missing":
         return node.problem("is missing: this key is required", got=False, below=rest)
     if kind == "union_tag_not_found":
-        return node.problem(
-            f"is missing: give one of {listed(CHOICES['type'], 'or')}", got=False, below=("type",)
-        )
+        return node.problem(f"is missing: give one of {listed(CHOICES['type'], 'or')}", got=False, below=("type",))
     if kind == "extra_forbidden":
         known = _known(location[:-1])
         return node.problem(

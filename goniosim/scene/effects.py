@@ -62,8 +62,7 @@ def effects(scene):
         Effect(
             "transmission",
             scene.material.transmits,
-            f"{bottom} is the last interface and "
-            + ("lets light out below" if scene.material.transmits else "opaque"),
+            f"{bottom} is the last interface and " + ("lets light out below" if scene.material.transmits else "opaque"),
         ),
         Effect(
             "internal_paths",
@@ -118,9 +117,7 @@ def _chromatic(scene):
         return Effect("chromatic", True, "no two channels agree everywhere: 3 distinct channels are traced")
     shared = max(positions, key=positions.count)
     first, second = (name for name, position in zip(_COLOURS, positions, strict=True) if position == shared)
-    return Effect(
-        "chromatic", True, f"{first} and {second} agree everywhere: {count} distinct channels are traced"
-    )
+    return Effect("chromatic", True, f"{first} and {second} agree everywhere: {count} distinct channels are traced")
 
 
 def _asked(name, places, absent):

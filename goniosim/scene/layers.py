@@ -96,14 +96,10 @@ INTERFACES = {"dielectric": Dielectric, "conductor": Conductor, "lambert": Lambe
 class Layer(Part):
     """One entry of the stack: an interface or a medium."""
 
-    model_config = ConfigDict(
-        json_schema_extra={"oneOf": [{"required": ["interface"]}, {"required": ["medium"]}]}
-    )
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["interface"]}, {"required": ["medium"]}]})
 
     # None stands for an absent key, never for a null that was written.
-    interface: Interface = Field(
-        default=None, description="A boundary where light is reflected and refracted."
-    )
+    interface: Interface = Field(default=None, description="A boundary where light is reflected and refracted.")
     medium: Medium = Field(default=None, description="What fills the space between two interfaces.")
 
     @model_validator(mode="before")

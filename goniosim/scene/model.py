@@ -16,9 +16,7 @@ from goniosim.scene.structure import structure_mistakes
 MAX_CELLS = 4_000_000
 MAX_DIRECTIONS = 1000
 
-Theta = Number(
-    0.0, 90.0, "be 0 or more and below 90: it is the angle from the normal in degrees", open_high=True
-)
+Theta = Number(0.0, 90.0, "be 0 or more and below 90: it is the angle from the normal in degrees", open_high=True)
 CellCount = Number(1, MAX_CELLS, "be a whole number from 1 to 4e6", integer=True)
 Rays = Number(100, 10**15, "be a whole number from 100 to 1e15, such as 1e7", integer=True)
 Seed = Number(0, 2**63 - 1, "be a whole number from 0 to 2^63 - 1", integer=True)

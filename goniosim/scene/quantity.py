@@ -39,8 +39,7 @@ def mistakes(located):
     pydantic.ValidationError
     """
     details = [
-        InitErrorDetails(type=mistake(message), loc=location, input=value)
-        for location, message, value in located
+        InitErrorDetails(type=mistake(message), loc=location, input=value) for location, message, value in located
     ]
     return ValidationError.from_exception_data("scene", details)
 
@@ -100,9 +99,7 @@ class Number(Checked):
         if value != math.floor(value):
             raise mistake(f"must {self.rule}")
         if value > EXACT_INTEGERS:
-            raise mistake(
-                "must be written with all its digits: a number this large is not exact with an exponent"
-            )
+            raise mistake("must be written with all its digits: a number this large is not exact with an exponent")
         return int(value)
 
     def json_schema(self):
@@ -132,8 +129,7 @@ class PerChannel(Checked):
             return self.number.check(value)
         if len(value) != len(CHANNELS):
             raise mistake(
-                "must be one number for all channels or a list of three, for R, G and B: "
-                f"this list has {len(value)}"
+                f"must be one number for all channels or a list of three, for R, G and B: this list has {len(value)}"
             )
         return check_each(self.number, value)
 

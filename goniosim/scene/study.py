@@ -65,9 +65,7 @@ def _expand(root):
     study = root.value["study"]
     shared = {key: root.value[key] for key in SHARED if key in root.value}
     if "materials" in study.value:
-        return [
-            Node({"material": material, **shared}, root.origin) for material in study.value["materials"].value
-        ]
+        return [Node({"material": material, **shared}, root.origin) for material in study.value["materials"].value]
     template = {"material": study.value["material"], **shared}
     axes = study.value["cross"].value
     combinations = itertools.product(*(axis.value for axis in axes.values()))
@@ -148,9 +146,7 @@ def _axis_problems(axis):
             wanted = f"a mapping with {listed(list(first.value))}" if _keys(first) else "a value by itself"
             problems.append(entry.problem(f"must be {wanted}, as the first entry of this axis is"))
         leaves = entry.value.values() if isinstance(entry.value, dict) else [entry]
-        problems += [
-            leaf.problem("must be a number, text or a list of these") for leaf in leaves if not _is_leaf(leaf)
-        ]
+        problems += [leaf.problem("must be a number, text or a list of these") for leaf in leaves if not _is_leaf(leaf)]
     return problems
 
 

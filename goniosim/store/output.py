@@ -186,8 +186,7 @@ def _refuse_to_destroy(target, shown):
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
     if target.exists() and not userblock.is_result(target):
         raise OutputError(
-            f"{shown}: exists and is not a goniosim result, so it is not overwritten; "
-            "choose another name or remove it"
+            f"{shown}: exists and is not a goniosim result, so it is not overwritten; choose another name or remove it"
         )
 
 

@@ -131,9 +131,7 @@ def _result(file):
         cost=_cost(file, read),
         effects={name: bool(called_for) for name, called_for in file["effects"].attrs.items()},
         provenance={
-            name: value
-            for name, value in attributes.items()
-            if name not in NOT_PROVENANCE and isinstance(value, str)
+            name: value for name, value in attributes.items() if name not in NOT_PROVENANCE and isinstance(value, str)
         },
     )
 

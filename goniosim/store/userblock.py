@@ -177,9 +177,7 @@ def _no_magic(block, path):
     if MAGIC.startswith(block):
         return DamagedFileError(f"{path}: is cut off after {len(block)} bytes; {REMEDY}")
     kind = "an HDF5 file, but " if block.startswith(_HDF5_SIGNATURE) else ""
-    return ForeignFileError(
-        f"{path}: is {kind}not a goniosim result; name a file that `goniosim simulate` wrote"
-    )
+    return ForeignFileError(f"{path}: is {kind}not a goniosim result; name a file that `goniosim simulate` wrote")
 
 
 def verify(stream, block, path):
@@ -204,6 +202,5 @@ def verify(stream, block, path):
         raise DamagedFileError(f"{path}: cannot be read: {error.strerror}; {REMEDY}") from error
     if digest != block.digest:
         raise DamagedFileError(
-            f"{path}: its content does not match its digest: it was damaged or edited after it was written; "
-            f"{REMEDY}"
+            f"{path}: its content does not match its digest: it was damaged or edited after it was written; {REMEDY}"
         )

@@ -74,8 +74,9 @@ def encode(result):
         "column_edges": len(result.cells.column_edges),
         "rays": len(result.cost.rays),
     }
-    with h5py.File(uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=_FORMAT,
-                   userblock_size=userblock.SIZE) as file:
+    with h5py.File(
+        uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=_FORMAT, userblock_size=userblock.SIZE
+    ) as file:
         # Scales come first in this order, so that datasets can be attached to them as they are made.
         for path, values in _arrays(result):
             _write_dataset(file, path, values, sizes)

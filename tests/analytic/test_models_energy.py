@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from goniosim.models import MODELS, evaluate_model, prepare
-from goniosim.models.albedo import WHITE, directional_albedo
-from goniosim.models.belcour18_symmetric import MODEL as SYMMETRIC
-from goniosim.models.belcour_lobes import Options, statistics
+from goniosim.models.belcour.albedo import WHITE, directional_albedo
+from goniosim.models.belcour.belcour18_symmetric import MODEL as SYMMETRIC
+from goniosim.models.belcour.lobes import Options, statistics
 from goniosim.models.stack import CONDUCTOR, DIELECTRIC
 from reference.closed_forms import (
     WHITE_GGX_ALPHA_1_NORMAL,

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from goniosim.models import evaluate_model
-from goniosim.models.belcour_lobes import Options, statistics
+from goniosim.models.belcour.lobes import Options, statistics
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 

@@ -92,9 +92,7 @@ def test_tracer_against_integrated_conductor(alpha, theta, parametrization):
     """Largest of 162 standardised deviations below 5: a false alarm in less than 1e-4 of the cases."""
     seen = trace(rough_conductor(alpha), theta, 100_000, 1, 9, 18, parametrization)
     exact, second = (
-        integrate_cells(
-            closed_forms.reflection_density(alpha, 1.45 + 1.0j, power), theta, 9, 18, parametrization
-        )
+        integrate_cells(closed_forms.reflection_density(alpha, 1.45 + 1.0j, power), theta, 9, 18, parametrization)
         for power in (1, 2)
     )
     error = np.sqrt((second - exact**2) / 100_000)

@@ -32,9 +32,7 @@ def assert_energies(found, exact, rays=RAYS):
 def test_smooth_metal(eta, kappa, tau):
     layers = [dielectric(1.5), medium(tau), conductor(eta, kappa)]
     audit = simulate(make_scene(layers, THETAS, rows=9, columns=9), rays=RAYS, seed=1).audit
-    direct, internal = zip(
-        *(closed_forms.smooth_metal(c, 1.5, eta, kappa, tau) for c in cosines()), strict=True
-    )
+    direct, internal = zip(*(closed_forms.smooth_metal(c, 1.5, eta, kappa, tau) for c in cosines()), strict=True)
     assert_energies(audit.energy["reflected_internal"][:, 0], internal)
     assert_energies(audit.energy["reflected_direct"][:, 0], direct)
     np.testing.assert_allclose(audit.direct_integrated[:, 0], direct, rtol=1e-12)

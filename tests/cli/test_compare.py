@@ -48,8 +48,16 @@ def report(tmp_path_factory):
     plastic = make_result(components=("reflection/direct", "reflection/internal"), channels=("R", "G", "B"))
     write_result(plastic, folder / "results" / "plastic.h5")
     code, out, err = run(
-        "compare", folder / "results", "-o", folder / "report", "--subcells", "9",
-        "--models", "ww09,bati19_ww,belcour18_forward", "--set", "ww09.masking=correlated",
+        "compare",
+        folder / "results",
+        "-o",
+        folder / "report",
+        "--subcells",
+        "9",
+        "--models",
+        "ww09,bati19_ww,belcour18_forward",
+        "--set",
+        "ww09.masking=correlated",
     )
     assert code == 0, err
     return folder / "report", folder / "results", out, err
@@ -142,8 +150,9 @@ def test_models_h5_reads_like_results(report):
                 ours, theirs = (root[component][name] for root in (group, result))
                 assert ours.shape == theirs.shape and ours.dtype == theirs.dtype and ours.fletcher32
                 assert ours.attrs["units"] == theirs.attrs["units"]
-                assert [dim[0].name.split("/")[-1] for dim in ours.dims] == list(layout.describe(
-                    f"{component}/{name}").dims)
+                assert [dim[0].name.split("/")[-1] for dim in ours.dims] == list(
+                    layout.describe(f"{component}/{name}").dims
+                )
         internal = group["reflection/internal"]
         size = group["cells/projected_solid_angle"][()][:, None]
         np.testing.assert_allclose(internal["bsdf"][()] * size, internal["energy"][()], rtol=2e-7)

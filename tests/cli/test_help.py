@@ -41,7 +41,7 @@ def test_the_public_names_are_there_and_no_others():
     assert callable(goniosim.compare)
     assert callable(goniosim.evaluate_model)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
-        goniosim.nonsense
+        _ = goniosim.nonsense
 
 
 def test_every_command_is_listed_with_a_whole_sentence(goniosim):

@@ -37,9 +37,7 @@ def test_info_as_json_holds_the_numbers_themselves(goniosim, result):
     data = json.loads(out)
     assert code == 0
     assert data["status"] == "partial"
-    assert (
-        data["albedo"]["reflection/internal"]["value"] == result.audit.energy["reflected_internal"].tolist()
-    )
+    assert data["albedo"]["reflection/internal"]["value"] == result.audit.energy["reflected_internal"].tolist()
 
 
 def test_plot_writes_pictures_and_names_them(goniosim, result, folder):

@@ -105,9 +105,7 @@ def test_a_second_ctrl_c_ends_at_once(python, folder):
 
 
 def test_one_signal_delivered_twice_is_one(python, folder):
-    process = python(
-        _DEAF_ENGINE.replace("time.sleep(600)", "raise SystemExit(99)"), "simulate", "scene.yaml"
-    )
+    process = python(_DEAF_ENGINE.replace("time.sleep(600)", "raise SystemExit(99)"), "simulate", "scene.yaml")
     _wait_for(process, "tracing")
     process.send_signal(signal.SIGTERM)
     process.send_signal(signal.SIGTERM)

@@ -122,7 +122,7 @@ def test_check_of_a_study_is_a_table(goniosim, folder):
 
 def test_the_predicted_size_bounds_the_real_one(goniosim, folder):
     goniosim("simulate", "scene.yaml", "-q", "--set", "simulation.orders=3", "--rays", "1e5")
-    from goniosim.report.forecast import file_size
+    from goniosim.report.simulation.forecast import file_size
     from goniosim.scene import load_scene
 
     real = (folder / "small.h5").stat().st_size

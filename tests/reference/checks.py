@@ -44,9 +44,7 @@ def plastic_cells(thetas, parametrization, rays, seed):
     """Chi-squares of an absorbing smooth coat over a Lambertian base."""
     scene = make_scene([dielectric(1.5), medium(0.2), lambert(0.5)], thetas, parametrization)
     energies = simulate(scene, rays=rays, seed=seed).components["reflection/internal"].energy
-    return _chi_squares(
-        energies, lambda power: plastic_density(1.5, 0.5, 0.2, power), thetas, parametrization, rays
-    )
+    return _chi_squares(energies, lambda power: plastic_density(1.5, 0.5, 0.2, power), thetas, parametrization, rays)
 
 
 def conductor_cells(alpha, thetas, parametrization, rays, seed):
@@ -68,9 +66,7 @@ def transmission_cells(alpha, eta, thetas, rays, seed):
     """Chi-squares of the light refracted by one rough interface."""
     scene = make_scene([dielectric(eta, alpha)], thetas)
     energies = simulate(scene, rays=rays, seed=seed).components["transmission"].energy
-    return _chi_squares(
-        energies, lambda power: transmission_density(alpha, eta, power), thetas, "classic", rays
-    )
+    return _chi_squares(energies, lambda power: transmission_density(alpha, eta, power), thetas, "classic", rays)
 
 
 def direct_cells(top, density, thetas, parametrization, rows=90, columns=360):

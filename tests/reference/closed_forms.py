@@ -57,9 +57,9 @@ def internal_reflectance(n, tau=0.0):
     # F_int rises with infinite slope at the critical angle; mu = critical + t^2 takes it away.
     width = math.sqrt(1.0 - critical)
     start = 0.0 if critical else 1e-150
-    above = quad(
-        lambda t: 2.0 * t * integrand(critical + t * t), start, width, epsabs=1e-13, epsrel=1e-12, limit=200
-    )[0]
+    above = quad(lambda t: 2.0 * t * integrand(critical + t * t), start, width, epsabs=1e-13, epsrel=1e-12, limit=200)[
+        0
+    ]
     return below + above
 
 

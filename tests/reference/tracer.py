@@ -244,9 +244,7 @@ def cell_of(dx, dy, dz, lx, ly, lz, half, rows, columns):
 
 
 @njit
-def trace_rays(
-    kind, alpha, eta, kappa, rho, tau, theta, rays, half, rng, moment1, moment2, hits, audit1, audit2
-):
+def trace_rays(kind, alpha, eta, kappa, rho, tau, theta, rays, half, rng, moment1, moment2, hits, audit1, audit2):
     """Trace and tally; the moments are ``[component, order, channel, row, column]``."""
     channels = tau.shape[1]
     n_orders, rows, columns = moment1.shape[1], moment1.shape[3], moment1.shape[4]

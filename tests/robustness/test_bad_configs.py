@@ -58,10 +58,7 @@ MEDIUM = "medium: {tau: 1}"
         ([MEDIUM], {0: "must be an interface: the stack begins at its top interface, with air above"}),
         (
             [COATING, MEDIUM],
-            {
-                1: "must be an interface: a medium lies between two interfaces; "
-                "remove it or put an interface below it"
-            },
+            {1: "must be an interface: a medium lies between two interfaces; remove it or put an interface below it"},
         ),
         (
             [COATING, LAMBERT, MEDIUM, MEDIUM],

@@ -162,7 +162,7 @@ def test_newer_major_version(tmp_path, sound):
 
 
 def test_a_damaged_version_is_not_a_newer_one(tmp_path, sound):
-    assert b"schema 1.0" in sound[:MAGIC + 3]
+    assert b"schema 1.0" in sound[: MAGIC + 3]
     refused(tmp_path / "r.h5", flipped(sound, MAGIC, 1), DamagedFileError)
 
 
@@ -171,8 +171,7 @@ def sealed(path):
     content = path.read_bytes()
     with h5py.File(path) as file:
         attributes = {
-            name: value.decode() if isinstance(value, bytes) else int(value)
-            for name, value in file.attrs.items()
+            name: value.decode() if isinstance(value, bytes) else int(value) for name, value in file.attrs.items()
         }
     path.write_bytes(userblock.make(content[userblock.SIZE :], attributes) + content[userblock.SIZE :])
 

@@ -189,6 +189,7 @@ def test_full_disk_at_the_end(folder, rescued, monkeypatch):
     write_result(make_result(name="first"), folder / "r.h5")
     pwrite = os.pwrite
     with reserve_output(folder / "r.h5", 1000) as reservation:
+
         def full(descriptor, data, position):
             if position > 0 and len(list(folder.iterdir())) > 1:
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

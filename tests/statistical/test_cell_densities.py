@@ -50,8 +50,6 @@ def test_transmission_of_a_rough_interface(alpha, eta):
 def test_integrated_direct_reflection(top, n, parametrization, alpha):
     """A quadrature, not a sample: its error bar must cover its error in every cell."""
     top["interface"]["alpha"] = alpha
-    energy, stderr, exact = checks.direct_cells(
-        top, reflection_density(alpha, n), THETAS, parametrization, 45, 180
-    )
+    energy, stderr, exact = checks.direct_cells(top, reflection_density(alpha, n), THETAS, parametrization, 45, 180)
     assert (np.abs(energy - exact) <= 3.0 * stderr + 3e-7 * exact + 1e-11).all()
     np.testing.assert_allclose(energy.sum(axis=(1, 2)), exact.sum(axis=(1, 2)), rtol=1e-6)

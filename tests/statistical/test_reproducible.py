@@ -118,8 +118,7 @@ def test_first_run_equals_later_runs(tmp_path):
     environment.pop("NUMBA_CACHE_DIR", None)
     command = [sys.executable, "-c", DIGEST]
     first, second = (
-        subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
-        for _ in range(2)
+        subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout for _ in range(2)
     )
     assert len(first.strip()) == 64
     assert first == second

@@ -81,8 +81,9 @@ def _flux(parametrization, theta_deg, alpha):
     light = np.array([math.sin(theta), 0.0, math.cos(theta)])
 
     def direction(axis_theta, phi):
-        return np.array([math.sin(axis_theta) * math.cos(phi), math.sin(axis_theta) * math.sin(phi),
-                         math.cos(axis_theta)])
+        return np.array(
+            [math.sin(axis_theta) * math.cos(phi), math.sin(axis_theta) * math.sin(phi), math.cos(axis_theta)]
+        )
 
     def g1(z):
         return 2.0 / (1.0 + math.sqrt(1.0 + alpha**2 * (1.0 / z**2 - 1.0)))
@@ -118,8 +119,13 @@ def test_lobes_agree_with_adaptive_quadrature(pool, parametrization, theta_deg):
     for row, column in zip(*np.divmod(strongest, 12), strict=True):
         u, phi = np.radians(6.0 * row), np.radians(30.0 * column)
         exact, _ = dblquad(
-            lambda b, a: flux(a, b), u, u + math.radians(6.0), phi, phi + math.radians(30.0),
-            epsabs=1e-8, epsrel=1e-6,
+            lambda b, a: flux(a, b),
+            u,
+            u + math.radians(6.0),
+            phi,
+            phi + math.radians(30.0),
+            epsabs=1e-8,
+            epsrel=1e-6,
         )
         assert refined[row, column] == pytest.approx(exact, rel=2e-3, abs=1e-4 * refined.max())
         assert coarse[row, column] == pytest.approx(exact, rel=2e-2, abs=1e-3 * refined.max())

@@ -5,7 +5,7 @@ import pytest
 from goniosim.compare.variants import Variant, check_request, components_for, variants_for
 from goniosim.errors import ConfigError
 from goniosim.models import MODELS
-from goniosim.report.compare_labels import short_names
+from goniosim.report.comparison.labels import short_names
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 PLASTIC = make_scene([dielectric(1.5, 0.1), medium(0.2), lambert(0.5)], 30.0)

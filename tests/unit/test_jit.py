@@ -22,7 +22,7 @@ def test_an_edit_of_any_compiled_source_means_a_new_folder(tmp_path, monkeypatch
 
 
 def test_the_cache_folder_of_others_is_left_alone():
-    assert numba.config.CACHE_DIR != str(_jit.CACHE_FOLDER)
+    assert str(_jit.CACHE_FOLDER) != numba.config.CACHE_DIR
 
 
 def test_an_unwritable_home_falls_back(tmp_path):

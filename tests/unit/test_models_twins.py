@@ -139,7 +139,7 @@ def test_absolute_index_of_a_conductor():
 
 def test_transmission_lobe_points_straight_through():
     """Air below: the transmitted lobe is a reflection lobe about n, seen in the mirrored exit hemisphere."""
-    from goniosim.models.belcour_lobes import Options, statistics
+    from goniosim.models.belcour.lobes import Options, statistics
 
     scene = make_scene([dielectric(1.5, 0.2), medium([0.1, 0.2, 0.8]), dielectric(1.0, 0.1)], 0)
     theta, view = 50.0, _direction(40.0, 160.0)

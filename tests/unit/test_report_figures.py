@@ -5,7 +5,7 @@ import pytest
 from matplotlib.image import imread
 
 from goniosim.errors import OutputError, UnusableResultError
-from goniosim.report.figures import draw
+from goniosim.report.simulation.figures import draw
 from synthetic import make_result
 
 
@@ -60,7 +60,7 @@ def test_black_slices_partial_results_and_single_components_can_be_drawn(tmp_pat
 
 def test_many_directions_fit_into_the_overview(tmp_path):
     result = make_result(channels=("R", "G", "B"), theta_deg=tuple(range(0, 90, 5)))
-    from goniosim.report.overview import MOST, overview_figure
+    from goniosim.report.simulation.overview import MOST, overview_figure
 
     figure = overview_figure(result)
     # A disk and a curve for each direction shown, for reflection and transmission.

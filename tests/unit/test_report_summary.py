@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from goniosim.report import audit, cost, study, summary
+from goniosim.report.simulation import audit, cost, study, summary
 from synthetic import make_result
 
 

@@ -3,13 +3,11 @@
 import numpy as np
 import pytest
 
-from goniosim.report import tone
+from goniosim.report.drawing import tone
 
 
 def test_remapping_is_that_of_the_paper():
-    assert tone.remap(np.array([-1.0, 0.0, 1.0, 100.0])) == pytest.approx(
-        [0.0, 0.0, np.log(2.0), np.log(11.0)]
-    )
+    assert tone.remap(np.array([-1.0, 0.0, 1.0, 100.0])) == pytest.approx([0.0, 0.0, np.log(2.0), np.log(11.0)])
 
 
 def test_full_scale_is_a_quantile_that_few_pixels_exceed():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from goniosim.report import inplane, view
+from goniosim.report.drawing import inplane, view
 from goniosim.result import Cells
 from goniosim.slices import slice_geometry
 from synthetic import make_result

@@ -88,8 +88,7 @@ def test_why_names_the_layers_that_ask():
         ).items()
     }
     assert why == {
-        "rough_interfaces": "asked for by layers[0] (dielectric, alpha 0.2), "
-        "layers[2] (conductor, alpha 0.001)",
+        "rough_interfaces": "asked for by layers[0] (dielectric, alpha 0.2), layers[2] (conductor, alpha 0.001)",
         "smooth_interfaces": "no interface has alpha 0",
         "lambertian": "no interface is lambert",
         "conductor": "asked for by layers[2] (conductor, alpha 0.001)",
@@ -106,10 +105,7 @@ def test_why_says_what_is_absent():
     assert why["absorption"] == "no medium absorbs"
     assert why["internal_paths"] == "layers[0] (dielectric, alpha 0) is the only interface"
     assert why["orders"] == "simulation.orders is not given"
-    assert (
-        why["transmission"]
-        == "layers[0] (dielectric, alpha 0) is the last interface and lets light out below"
-    )
+    assert why["transmission"] == "layers[0] (dielectric, alpha 0) is the last interface and lets light out below"
 
 
 @pytest.mark.parametrize(

@@ -109,8 +109,7 @@ def test_an_override_mends_a_mistake_of_the_file():
         ),
         (
             "material.layers[0].interfce.alpha=1",
-            "leads nowhere: there is no material.layers[0].interfce "
-            "(did you mean material.layers[0].interface.alpha?)",
+            "leads nowhere: there is no material.layers[0].interfce (did you mean material.layers[0].interface.alpha?)",
         ),
         (
             "material.layers[3].medium.tau=1",

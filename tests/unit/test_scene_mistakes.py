@@ -95,8 +95,7 @@ COAT = "f.yaml:4: material.layers[0].interface"
         (
             "[0, 15, 30]",
             "45",
-            "f.yaml:12: incident.theta_deg: must be a list of angles in degrees, such as [0, 30, 60] "
-            "[got 45]",
+            "f.yaml:12: incident.theta_deg: must be a list of angles in degrees, such as [0, 30, 60] [got 45]",
         ),
         ("rays: 1e7", "rays: 99", f"f.yaml:14: simulation.rays: {RAYS} [got 99]"),
         ("rays: 1e7", "rays: 1000.5", f"f.yaml:14: simulation.rays: {RAYS} [got 1000.5]"),
@@ -140,8 +139,7 @@ COAT = "f.yaml:4: material.layers[0].interface"
         (
             "classic}",
             "classic, rows: 2001, columns: 2000}",
-            "f.yaml:13: slice: must have no more than 4e6 cells, and rows x columns is 4002000: "
-            "use fewer of either",
+            "f.yaml:13: slice: must have no more than 4e6 cells, and rows x columns is 4002000: use fewer of either",
         ),
         # names and choices
         ("patina", "../patina", f"f.yaml:2: material.name: {NAME} [got '../patina']"),
@@ -160,8 +158,7 @@ COAT = "f.yaml:4: material.layers[0].interface"
         (
             "dielectric",
             "dielectrc",
-            f"{COAT}.type: must be dielectric, conductor or lambert [got 'dielectrc'] "
-            "(did you mean dielectric?)",
+            f"{COAT}.type: must be dielectric, conductor or lambert [got 'dielectrc'] (did you mean dielectric?)",
         ),
         ("dielectric", "glass", f"{COAT}.type: must be dielectric, conductor or lambert [got 'glass']"),
         ("dielectric", "[1]", f"{COAT}.type: must be dielectric, conductor or lambert [got [1]]"),
@@ -227,8 +224,7 @@ COAT = "f.yaml:4: material.layers[0].interface"
         (
             "simulation: {rays: 1e7, seed: 1}",
             "simulation: 1e7",
-            "f.yaml:14: simulation: must be a mapping with rays, seed, estimator, orders and threads "
-            "[got 10000000.0]",
+            "f.yaml:14: simulation: must be a mapping with rays, seed, estimator, orders and threads [got 10000000.0]",
         ),
         (
             "{type: dielectric, eta: 1.5, alpha: 0.2}",

@@ -134,8 +134,7 @@ ETA = "must lie between 0.1 and 10: it is the absolute index below the interface
             "thetadeg",
             [
                 "study.yaml:13: incident.theta_deg: is missing: this key is required",
-                "study.yaml:14: incident.thetadeg: unknown key; the keys here are theta_deg "
-                "(did you mean theta_deg?)",
+                "study.yaml:14: incident.thetadeg: unknown key; the keys here are theta_deg (did you mean theta_deg?)",
             ],
         ),
         (  # an entry of a list that a reference stands for
@@ -285,10 +284,7 @@ def test_mistakes_of_a_crossing(tmp_path, old, new, lines):
         (
             "    - name: mirror\n",
             "    - \n",
-            [
-                "study.yaml:8: study.materials[1].name: is missing: this key is required "
-                "(in material number 2)"
-            ],
+            ["study.yaml:8: study.materials[1].name: is missing: this key is required (in material number 2)"],
         ),
         (
             "rho: 0.5",

@@ -158,8 +158,15 @@ def test_predicted_size(parametrization, orders):
     those of half slices.
     """
     components = ("reflection/direct", "reflection/internal")
-    result = make_result([30.0], rows=90, columns=360, rays=10_000_000, parametrization=parametrization,
-                         orders=orders, components=components)
+    result = make_result(
+        [30.0],
+        rows=90,
+        columns=360,
+        rays=10_000_000,
+        parametrization=parametrization,
+        orders=orders,
+        components=components,
+    )
     if parametrization == "half":
         varied = np.random.default_rng(1).uniform(1, 2, (2, *result.cells.valid.shape))
         result.cells.solid_angle, result.cells.projected_solid_angle = varied

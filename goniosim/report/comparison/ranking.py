@@ -1,0 +1,97 @@
+"""The ranking of the models as text."""
+
+from .. import text
+
+
+def ranking(summaries):
+    """Rank the models on every material by their error.
+
+    Parameters
+    ----------
+    summaries : list of goniosim.compare.summary.Summary
+
+    Returns
+    -------
+    str
+    """
+    blocks, unmarked = [], True
+    for summary in summaries:
+        lines, all_converged = _material(summary)
+        blocks.append("\n".join(lines))
+        unmarked &= all_converged
+    blocks.append("\n".join(_explanation(unmarked)))
+    return "\n\n".join(blocks)
+
+
+def _material(summary):
+    rows = sorted(summary.overall(), key=lambda row: row["rmse_converged"])
+    lines = [f"{summary.name}  ({summary.component})"]
+    if rows:
+        header = [
+            "model",
+            "RMSE",
+            "relative\nRMSE",
+            "converged",
+            "albedo\nerror",
+            "time per\nslice",
+            "RMSE of all\nreflection",
+        ]
+        total = {summary.label_of(row): row for row in summary.rows if _is_total(row)}
+        same = summary.component == "reflection"
+        table = [_cells(summary, row, None if same else total.get(summary.label_of(row))) for row in rows]
+        if same:
+            header, table = header[:-1], [cells[:-1] for cells in table]
+        lines += text.table(header, table)
+        first = rows[0]
+        lines.append(
+            f"  simulation: noise floor {first['noise_floor']:.2e} sr^-1/2 after "
+            f"{text.count(first['rays'])} rays and {text.duration(first['simulation_seconds'])} per direction"
+        )
+    lines += _not_applicable(summary)
+    return lines, all(row["converged"] for row in rows)
+
+
+def _not_applicable(summary):
+    """One line for each reason why models do not apply."""
+    models = {}
+    for row in summary.rows:
+        if row["note"] is not None:
+            models.setdefault(row["note"], []).append(row["model"])
+    return [f"  n/a: {', '.join(names)}: {reason}" for reason, names in models.items()]
+
+
+def _is_total(row):
+    return row["component"] == "reflection" and row["channel"] == "mean" and row["theta_deg"] == "all"
+
+
+def _cells(summary, row, total):
+    relative = row["rmse_relative"]
+    return [
+        summary.label_of(row),
+        _error(row),
+        "" if relative is None or row["below_noise"] else f"{relative:.3g}",
+        _converged(row),
+        text.with_error(row["albedo_error"], row["albedo_reference_stderr"]),
+        text.duration(row["model_seconds"]),
+        "" if total is None else _error(total),
+    ]
+
+
+def _error(row):
+    if row["below_noise"]:
+        return f"below noise (< {row['rmse_upper']:.1e})"
+    return text.with_error(row["rmse"], row["rmse_stderr"]) + ("" if row["converged"] else " *")
+
+
+def _converged(row):
+    return "yes" if row["converged"] else f"* {row['rmse_converged']:.4g}"
+
+
+def _explanation(all_converged):
+    lines = [
+        "RMSE in sr^-1/2: Eq. 4 of Bati et al. 2019 over all directions, mean over the channels, less the",
+        "noise of the simulation; 'below noise': less than two standard errors, and the limit at 97.7 %.",
+    ]
+    if not all_converged:
+        lines.append("*: the sub-cells are too coarse for this lobe; the converged error stands beside it.")
+    return lines

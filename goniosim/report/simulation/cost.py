@@ -1,0 +1,56 @@
+"""What accuracy cost in time, and what more of it would cost."""
+
+import numpy as np
+
+from .. import text
+
+# Rows shown of a long list of checkpoints.
+MOST_ROWS = 6
+
+
+def cost_lines(result):
+    """Table of rays, times and noise at some checkpoints, and the price of half the noise.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+
+    Returns
+    -------
+    list of str
+    """
+    cost = result.cost
+    if len(cost.rays) == 0:
+        return []
+    sampled = list(cost.error)
+    header = ["rays per direction", "seconds", "CPU seconds", *(f"noise {name}" for name in sampled)]
+    rows = [
+        [
+            text.count(round(cost.rays[p])),
+            f"{cost.seconds[p]:.2f}",
+            f"{cost.cpu_seconds[p]:.2f}",
+            *(f"{cost.error[name][p]:.2e}" for name in sampled),
+        ]
+        for p in _spread(len(cost.rays))
+    ]
+    lines = ["Cost (noise: standard error integrated over the slice, the floor of an RMSE, in sr^-1/2)"]
+    lines += text.table(header, rows)
+    total = float(result.rays.sum())
+    seconds, cpu_seconds = float(cost.seconds[-1]), float(cost.cpu_seconds[-1])
+    if seconds > 0.0 and cpu_seconds > 0.0:
+        lines.append(
+            f"  {text.count(total)} rays in {text.duration(seconds)}: {text.rate(total / seconds)}, "
+            f"{text.rate(total / cpu_seconds, per='CPU-second')}."
+        )
+        lines.append(
+            f"  Half the noise takes four times the rays: {text.count(4.0 * result.rays.max())} "
+            f"per direction, about {text.duration(4.0 * seconds)} on this machine."
+        )
+    return lines
+
+
+def _spread(n):
+    """At most `MOST_ROWS` indices of n checkpoints, evenly in the logarithm, with the last."""
+    if n <= MOST_ROWS:
+        return range(n)
+    return sorted({round(p) - 1 for p in np.geomspace(1, n, MOST_ROWS)})

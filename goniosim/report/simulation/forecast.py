@@ -1,0 +1,163 @@
+"""What a simulation will do and cost, before it is run."""
+
+from dataclasses import dataclass
+
+from .. import text
+
+# Seconds spent on probing one material, and on probing a whole study.
+PROBE = 1.0
+PROBE_STUDY = 12.0
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """Predicted cost of one material.
+
+    Attributes
+    ----------
+    name : str
+    directions : int
+    rays : int
+        Per direction.
+    rays_per_second, events_per_ray : float
+        As measured.
+    compile_seconds : float
+        Time that compilation, or loading from the cache, took.
+    n_bytes : int
+        Upper estimate of the size of the result file.
+    """
+
+    name: str
+    directions: int
+    rays: int
+    rays_per_second: float
+    events_per_ray: float
+    compile_seconds: float
+    n_bytes: int
+
+    @property
+    def seconds(self):
+        """Predicted time of tracing, without compilation."""
+        return self.directions * self.rays / self.rays_per_second
+
+
+def components(scene):
+    """Names of the components that a scene can have, by the effects it calls for."""
+    from goniosim.scene import effects
+
+    active = {effect.name for effect in effects(scene) if effect.active}
+    names = ["reflection/direct"]
+    if "internal_paths" in active:
+        names.append("reflection/internal")
+    if "transmission" in active:
+        names.append("transmission")
+    return names
+
+
+def file_size(scene):
+    """Upper estimate of the size of the result file of a scene, in bytes."""
+    from goniosim.store import predicted_size
+
+    names = components(scene)
+    orders = (scene.simulation.orders or 0) * (len(names) - 1)
+    return predicted_size(
+        len(scene.incident.theta_deg),
+        3,
+        scene.slice.rows,
+        scene.slice.columns,
+        len(names),
+        orders,
+        scene.slice.parametrization,
+    )
+
+
+def forecasts(scenes):
+    """Probe the speed of every scene for a moment.
+
+    Parameters
+    ----------
+    scenes : list of Scene
+
+    Returns
+    -------
+    list of Forecast
+    """
+    from goniosim.engine import probe
+
+    made = []
+    for scene in scenes:
+        measured = probe(scene, seconds=min(PROBE, PROBE_STUDY / len(scenes)))
+        made.append(
+            Forecast(
+                name=scene.material.name,
+                directions=len(scene.incident.theta_deg),
+                rays=scene.simulation.rays,
+                rays_per_second=measured.rays_per_second,
+                events_per_ray=measured.events_per_ray,
+                compile_seconds=measured.compile_seconds,
+                n_bytes=file_size(scene),
+            )
+        )
+    return made
+
+
+def effects_text(scene):
+    """List the effects that a scene calls for, and those it does without, each with the reason."""
+    from goniosim.scene import effects
+
+    found = effects(scene)
+    width = max(len(effect.name) for effect in found)
+    blocks = []
+    for heading, wanted in (("Called for", True), ("Absent, and so without cost", False)):
+        lines = [f"  {e.name.ljust(width)}   {e.why}" for e in found if e.active == wanted]
+        if lines:
+            blocks.append("\n".join([heading, *lines]))
+    return "\n".join([_heading(scene), "\n\n".join(blocks)])
+
+
+def cost_text(made):
+    """Tell the predicted time and file size: in words for one material, as a table for a study."""
+    compilation = sum(forecast.compile_seconds for forecast in made)
+    if len(made) == 1:
+        (one,) = made
+        lines = [
+            f"Predicted, from a probe of about {text.duration(PROBE)}",
+            f"  speed       {text.rate(one.rays_per_second)}, {one.events_per_ray:.1f} events per ray",
+            f"  time        {text.duration(one.seconds)} for {one.directions} x {text.count(one.rays)} rays",
+            f"  file size   at most {text.size(one.n_bytes)}",
+        ]
+    else:
+        header = ["material", "rays", "speed", "time", "file at most"]
+        rows = [
+            [
+                one.name,
+                text.count(one.directions * one.rays),
+                text.rate(one.rays_per_second),
+                text.duration(one.seconds),
+                text.size(one.n_bytes),
+            ]
+            for one in made
+        ]
+        seconds, n_bytes = sum(one.seconds for one in made), sum(one.n_bytes for one in made)
+        lines = [
+            f"{len(made)} materials, all valid; speeds from short probes",
+            *text.table(header, rows),
+            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)}.",
+        ]
+    if compilation > 1.0:
+        lines.append(f"  Compilation took {text.duration(compilation)}; it is kept for the next run.")
+    return "\n".join(lines)
+
+
+def _heading(scene):
+    chosen = scene.slice
+    angles = ", ".join(map(text.degrees, scene.incident.theta_deg))
+    return "\n".join(
+        [
+            f"{scene.material.name}: valid",
+            f"  incident theta [deg]: {angles}",
+            f"  {chosen.parametrization} slices, {chosen.rows} x {chosen.columns} cells",
+            f"  rays per direction: {text.count(scene.simulation.rays)}, seed {scene.simulation.seed}",
+            "",
+        ]
+    )

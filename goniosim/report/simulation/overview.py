@@ -1,0 +1,101 @@
+"""The overview: all incident directions side by side, what leaves above and what leaves below."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ...result import Component
+from .. import text
+from ..drawing import inplane, legend, panels, tone, view
+
+PIXELS = 400
+
+# More directions than this would make unreadable pictures; some evenly picked ones stand for all.
+MOST = 9
+NARROWEST = 10.5
+
+# Inches.
+LEFT, COLUMN, HEADER, ROW = 0.7, 2.15, 1.0, 3.65
+FOOTER = 0.25
+DISK_WIDTH, PLANE_TOP, PLANE_WIDTH, PLANE_HEIGHT = 1.95, 2.15, 1.72, 1.1
+
+TITLES = {"reflection": "Reflection", "transmission": "Transmission, mirrored to the upper side"}
+
+
+def overview_figure(result):
+    """Draw the sum of the reflected components, and the transmission, for all incident directions.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    n = len(result.theta_deg)
+    shown = sorted(set(np.linspace(0, n - 1, min(n, MOST)).round().astype(int).tolist()))
+    sides = [side for side in TITLES if any(name.startswith(side) for name in result.components)]
+    width = max(LEFT + COLUMN * len(shown), NARROWEST)
+    figure = Figure(figsize=(width, HEADER + ROW * len(sides) + FOOTER))
+    legend.title(figure, result.name + (f"  ({len(shown)} of {n} directions)" if len(shown) < n else ""))
+    numbers = [view.disk(result.cells, i, float(result.theta_deg[i]), PIXELS) for i in shown]
+    planes = []
+    for row, side in enumerate(sides):
+        planes += _row(figure, HEADER + ROW * row, result, side, shown, numbers)
+    figure.text(
+        (LEFT + 0.5 * COLUMN * (len(shown) - 1) + 0.5 * PLANE_WIDTH) / width,
+        0.15 / figure.get_figheight(),
+        "view angle in the plane of incidence [deg], light on the left; scales by log(1 + √f), one for each direction",
+        ha="center",
+        fontsize=8.5,
+        color="0.3",
+    )
+    invalid = any(bool((each == view.INVALID).any()) for each in numbers)
+    dirac = any(component.contains_delta for component in result.components.values())
+    legend.add(figure, planes, invalid=invalid, dirac=dirac)
+    return figure
+
+
+def _row(figure, top, result, side, shown, numbers):
+    width, height = figure.get_size_inches()
+    figure.text(0.2 / width, 1.0 - top / height, TITLES[side], fontsize=10.5, fontweight="bold")
+    total = _sum([component for name, component in result.components.items() if name.startswith(side)])
+    planes = []
+    for column, (i, each) in enumerate(zip(shown, numbers, strict=True)):
+        theta_deg = float(result.theta_deg[i])
+        left = LEFT + COLUMN * column
+        disk = panels.place(figure, left - 0.22, top + 0.3, DISK_WIDTH, DISK_WIDTH / panels.DISK_ASPECT)
+        plane = panels.place(figure, left, top + PLANE_TOP, PLANE_WIDTH, PLANE_HEIGHT)
+        _column(disk, plane, result, total, i, each)
+        disk.set_title(f"{text.degrees(theta_deg)}°", fontsize=10, x=panels.DISK_CENTRE, pad=2)
+        plane.set_xticks([-60, 0, 60])
+        plane.tick_params(labelsize=7.5)
+        planes.append(plane)
+    planes[0].set_ylabel("BSDF [1/sr]")
+    return planes
+
+
+def _column(disk, plane, result, total, i, numbers):
+    theta_deg = float(result.theta_deg[i])
+    slices, stderr = total.bsdf[i], total.bsdf_stderr[i]
+    dirac = panels.dirac_cell(total, i)
+    spot = None if dirac is None else view.centre(result.cells, theta_deg, dirac)
+    scaling = panels.without_cell(slices, dirac)
+    white = tone.white_point(panels.pixel_values(scaling, numbers)[numbers >= 0])
+    panels.top_view(disk, slices, numbers, theta_deg, white, spot)
+    angle, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, slices, stderr)
+    panels.curves(plane, result.channels, angle, f, sigma, sampled=total.hits is not None)
+    _, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, stderr)
+    panels.plane_axes(plane, theta_deg, inplane.highest(f, sigma, panels.BAND_SIGMAS), spacing=0.15)
+
+
+def _sum(components):
+    """What leaves on one side in all: the values only, sampled if all of it is sampled."""
+    return Component(
+        energy=sum(component.energy for component in components),
+        stderr=np.sqrt(sum(component.stderr**2 for component in components)),
+        bsdf=sum(component.bsdf for component in components),
+        bsdf_stderr=np.sqrt(sum(component.bsdf_stderr**2 for component in components)),
+        hits=components[0].hits,
+        contains_delta=any(component.contains_delta for component in components),
+    )

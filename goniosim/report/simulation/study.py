@@ -1,0 +1,70 @@
+"""The materials of a study, one line each."""
+
+import os
+
+import numpy as np
+
+from .. import text
+from .audit import albedos
+
+
+def row(result, path):
+    """Sum up one result of a study.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+    path : path
+        File that holds it.
+
+    Returns
+    -------
+    list of str
+        One entry for each column of `study_text`.
+    """
+    traced = result.rays > 0
+    albedo = [float(np.mean(value[traced])) for value, _ in albedos(result).values()]
+    lost = sum(energy for name, energy in result.audit.energy.items() if name.startswith("lost_masked"))
+    noise = max((float(error[-1]) for error in result.cost.error.values() if len(error)), default=0.0)
+    seconds = float(result.cost.seconds[-1]) if len(result.cost.seconds) else 0.0
+    return [
+        result.name,
+        result.status,
+        text.count(result.rays.sum()),
+        text.duration(seconds),
+        f"{sum(albedo):.4f}",
+        f"{100.0 * float(np.max(lost)):.1f} %",
+        f"{noise:.1e}",
+        text.size(os.path.getsize(path)),
+    ]
+
+
+def study_text(rows):
+    """Lay out the rows of a study as a table.
+
+    Parameters
+    ----------
+    rows : list of list of str
+        From `row`.
+
+    Returns
+    -------
+    str
+    """
+    header = [
+        "material",
+        "status",
+        "rays",
+        "time",
+        "mean\nalbedo",
+        "lost to\nmasking",
+        "noise\n[sr^-1/2]",
+        "file size",
+    ]
+    return "\n".join(
+        [
+            *text.table(header, rows),
+            "  Mean albedo: all components, mean over directions and channels; lost: the most of any",
+            "  direction and channel, a property of the single-scattering model.",
+        ]
+    )

@@ -1,0 +1,133 @@
+"""What a result holds, as text for a person and as plain data for a program."""
+
+import dataclasses
+import os
+
+import numpy as np
+
+from .. import text
+from . import audit, cost
+
+
+def summary(result, path=None):
+    """Describe a result in the words and tables shown after a simulation.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+    path : path, optional
+        File that holds the result; its name and size are then added.
+
+    Returns
+    -------
+    str
+    """
+    blocks = [
+        heading_lines(result),
+        audit.albedo_lines(result),
+        audit.audit_lines(result),
+        audit.direct_lines(result),
+        cost.cost_lines(result),
+    ]
+    if path is not None:
+        blocks.append([f"{path}  ({text.size(os.path.getsize(path))})"])
+    return "\n\n".join("\n".join(lines) for lines in blocks if lines)
+
+
+def description(result):
+    """Describe a result file: its summary, the effects simulated and where it came from.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+
+    Returns
+    -------
+    str
+    """
+    present = [name for name, active in result.effects.items() if active]
+    absent = [name for name, active in result.effects.items() if not active]
+    effects = [f"Effects simulated: {', '.join(present) or 'none'}"]
+    if absent:
+        effects.append(f"  not called for: {', '.join(absent)}")
+    origin = ["Origin", *_pairs(result.provenance)]
+    return "\n\n".join([summary(result), "\n".join(effects), "\n".join(origin)])
+
+
+def heading_lines(result):
+    """Name, status, directions, slices and rays of a result."""
+    rows, columns = result.cells.valid.shape[1:]
+    slices = f"{result.cells.parametrization} slices, {rows} x {columns} cells"
+    lines = [
+        f"{result.name}  ({result.status})",
+        f"  incident theta [deg]: {', '.join(map(text.degrees, result.theta_deg))}",
+        f"  {slices}, channels {', '.join(result.channels)}",
+        f"  rays per direction: {_rays(result.rays)}, seed {result.seed}",
+    ]
+    for name, component in result.components.items():
+        if component.contains_delta:
+            lines.append(f"  {name} contains a perfectly sharp (Dirac) part; its cell holds a cell average")
+        if component.orders:
+            lines.append(f"  {name} is also split by order: {', '.join(component.orders)}")
+    return lines
+
+
+def as_data(result):
+    """Everything `description` tells, as plain data that JSON can hold.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+
+    Returns
+    -------
+    dict
+        Arrays over directions and channels are nested lists ``[direction][channel]``.
+    """
+    rows, columns = result.cells.valid.shape[1:]
+    return {
+        "name": result.name,
+        "status": result.status,
+        "seed": int(result.seed),
+        "theta_deg": result.theta_deg.tolist(),
+        "phi_deg": result.phi_deg.tolist(),
+        "rays": result.rays.tolist(),
+        "channels": list(result.channels),
+        "slice": {"parametrization": result.cells.parametrization, "rows": rows, "columns": columns},
+        "components": {
+            name: {"contains_delta": bool(component.contains_delta), "orders": list(component.orders)}
+            for name, component in result.components.items()
+        },
+        "albedo": {
+            name: {"value": value.tolist(), "stderr": stderr.tolist()}
+            for name, (value, stderr) in audit.albedos(result).items()
+        },
+        "audit": {
+            name: {"energy": energy.tolist(), "stderr": result.audit.stderr[name].tolist()}
+            for name, energy in result.audit.energy.items()
+        },
+        "audit_residual": float(np.max(np.abs(result.audit.residual))),
+        "direct_deviation_sigma": audit.direct_deviation(result).tolist(),
+        "cost": {field.name: _lists(getattr(result.cost, field.name)) for field in dataclasses.fields(result.cost)},
+        "effects": {name: bool(active) for name, active in result.effects.items()},
+        "provenance": dict(result.provenance),
+        "config_yaml": result.config_yaml,
+        "config_hash": result.config_hash,
+    }
+
+
+def _lists(value):
+    if isinstance(value, dict):
+        return {name: array.tolist() for name, array in value.items()}
+    return value.tolist()
+
+
+def _rays(rays):
+    if rays.min() == rays.max():
+        return text.count(rays[0])
+    return f"between {text.count(rays.min())} and {text.count(rays.max())}"
+
+
+def _pairs(mapping):
+    width = max(map(len, mapping), default=0)
+    return [f"  {name.ljust(width)}   {value}" for name, value in sorted(mapping.items())]
