@@ -35,7 +35,7 @@ from numba import njit
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 _PACKAGE = Path(__file__).resolve().parent
-_COMPILED = ("optics", "slices", "engine", "models", "compare")
+_COMPILED = ("optics", "slices", "integration", "engine", "models")
 
 
 def source_hash():

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import ConfigError, UnusableResultError
+from ..integration import Pool
 from ..result import Result
 from ..store import open_result
-from .integrate import make_pool
 from .material import MaterialComparison, compare_material
 from .rows import material_rows
 from .variants import check_request
@@ -95,7 +95,7 @@ def compare(results, models=None, options=None, subcells=5, *, allow_partial=Fal
     for source in sources:
         found += [source] if isinstance(source, Result) else result_files(source)
     materials = []
-    with make_pool() as pool:
+    with Pool() as pool:
         for each in found:
             result = each if isinstance(each, Result) else open_result(each)
             check_usable(result, allow_partial)

@@ -5,19 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..integration import integrate_fixed
 from ..models import MODELS, prepare
 from ..result import Component
 from ..scene import parse_scene
-from .grid import make_grid
-from .integrate import integrate, to_slice
+from .cells import grid_of, to_bsdf, to_slice
+from .convergence import converge
 from .measures import Measures, measure, rmse
-from .refine import finer, refine
 from .variants import Variant, components_for, variants_for
 
 # An RMSE that differs by more than this share from that of the converged integration is marked.
 CONVERGED = 0.02
-# How many times finer the sub-cells are with which the sub-cells asked for are compared.
-FINER = 3
+# What a converged integration took, the least first.
+INTEGRATIONS = ("fixed", "adaptive", "exhausted")
 # Width of a Gaussian-like lobe that stands for a smooth interface in some models.
 SMOOTH = 1e-4
 
@@ -32,6 +32,8 @@ class Slices:
         Fraction of the incident flux; 0 in cells that are not valid.
     finer, converged : ndarray, shape (M, C, R, K)
         The same from finer sub-cells, and integrated adaptively.
+    integration : list of str
+        What ``converged`` took in each direction, see `convergence.Levels`.
     seconds : float
         Time of ``energy`` per slice: preparation, evaluation and integration.
     contains_delta : bool
@@ -41,6 +43,7 @@ class Slices:
     energy: np.ndarray
     finer: np.ndarray
     converged: np.ndarray
+    integration: list
     seconds: float
     contains_delta: bool
 
@@ -55,6 +58,8 @@ class Compared:
     component : str
     measures, finer, converged : Measures
         With the sub-cells asked for, with finer ones, and integrated adaptively.
+    integration : list of str
+        What ``converged`` took in each direction: one of `INTEGRATIONS`.
     seconds : float
         Time of the model per slice.
     """
@@ -64,14 +69,21 @@ class Compared:
     measures: Measures
     finer: Measures
     converged: Measures
+    integration: list
     seconds: float
 
     def is_converged(self, direction=None, channel=None):
         """Whether the sub-cells asked for give the RMSE to 2 %; arguments as in `measures.rmse`."""
+        if self.integrated(direction) == "exhausted":
+            return False
         found, limit = (rmse(each, direction, channel) for each in (self.measures, self.converged))
         if not (found.significant or limit.significant):
             return True
         return abs(found.raw - limit.raw) <= CONVERGED * limit.raw
+
+    def integrated(self, direction=None):
+        """What the converged integration took in a direction, or at most in any of them."""
+        return _most(self.integration if direction is None else [self.integration[direction]])
 
 
 @dataclass(frozen=True)
@@ -128,7 +140,7 @@ def compare_material(result, request, subcells, pool, progress=None):
         From `variants.check_request`.
     subcells : int
         Sub-cells along each side of a cell.
-    pool : concurrent.futures.ThreadPoolExecutor
+    pool : goniosim.integration.Pool
     progress : callable, optional
         Called as ``progress(done, total)`` after every integrated variant.
 
@@ -139,7 +151,7 @@ def compare_material(result, request, subcells, pool, progress=None):
     scene = parse_scene(result.config_yaml, f"the scene of {result.name}")
     variants, not_applicable = variants_for(scene, request)
     components = components_for(scene)
-    grids = [make_grid(result.cells, m, theta) for m, theta in enumerate(result.theta_deg)]
+    grids = [grid_of(result, m) for m in range(len(result.theta_deg))]
     compared, slices = [], {}
     for done, variant in enumerate(variants):
         parts = {}
@@ -163,13 +175,6 @@ def reference(result, component):
     return bsdf, np.sqrt(sum(part.bsdf_stderr**2 for part in parts))
 
 
-def to_bsdf(energy, cells):
-    """Energies per projected solid angle, shape (M, C, R, K); 0 in cells that are not valid."""
-    size = cells.projected_solid_angle[:, None]
-    lit = cells.valid[:, None] & (size > 0.0)
-    return np.divide(energy, size, out=np.zeros_like(energy), where=lit)
-
-
 def _parts(scene, model, component):
     """What is integrated for a component: the direct and internal paths apart where the model tells them."""
     split = ("reflection/direct", "reflection/internal")
@@ -184,22 +189,27 @@ def _integrated(scene, variant, component, grids, subcells, pool):
     narrowest = min((face.alpha or SMOOTH for face in faces if face.type != "lambert"), default=1.0)
     options = dict(variant.options)
     levels = {"energy": [], "finer": [], "converged": []}
+    integration = []
     # Compiled code is loaded before the clock starts.
     first = prepare(variant.model, scene, grids[0].theta_deg, component, options)
-    integrate(first, grids[0], 1, pool, grids[0].numbers[:1])
+    integrate_fixed(first, grids[0], 1, pool, grids[0].numbers[:1])
     seconds, contains_delta = 0.0, False
     for grid in grids:
         started = time.perf_counter()
         prepared = prepare(variant.model, scene, grid.theta_deg, component, options)
-        coarse, spread = integrate(prepared, grid, subcells, pool)
+        coarse, spread = integrate_fixed(prepared, grid, subcells, pool)
         seconds += time.perf_counter() - started
         contains_delta |= bool(np.any(prepared.mirror_energy))
-        fine, suspects = finer(prepared, grid, FINER * subcells, pool, coarse, spread)
-        limit = refine(prepared, grid, narrowest, pool, fine, suspects)
-        for found, energy in zip(levels.values(), (coarse, fine, limit), strict=True):
-            found.append(to_slice(prepared, grid, energy))
-    stacked = {name: np.stack(found) for name, found in levels.items()}
-    return Slices(**stacked, seconds=seconds / len(grids), contains_delta=contains_delta)
+        found = converge(prepared, grid, subcells, pool, coarse, spread, narrowest)
+        for kept, energy in zip(levels.values(), (found.coarse, found.finer, found.converged), strict=True):
+            kept.append(to_slice(prepared, grid, energy))
+        integration.append(found.integration)
+    return Slices(
+        **{name: np.stack(kept) for name, kept in levels.items()},
+        integration=integration,
+        seconds=seconds / len(grids),
+        contains_delta=contains_delta,
+    )
 
 
 def _component(found, cells):
@@ -215,4 +225,14 @@ def _compared(result, variant, component, parts):
         measure(to_bsdf(sum(energies), result.cells), bsdf, stderr, result.cells)
         for energies in zip(*((part.energy, part.finer, part.converged) for part in parts), strict=True)
     ]
-    return Compared(variant, component, *measures, seconds=sum(part.seconds for part in parts))
+    return Compared(
+        variant,
+        component,
+        *measures,
+        integration=[_most(taken) for taken in zip(*(part.integration for part in parts), strict=True)],
+        seconds=sum(part.seconds for part in parts),
+    )
+
+
+def _most(integrations):
+    return max(integrations, key=INTEGRATIONS.index)

@@ -21,6 +21,7 @@ COLUMNS = {
     "rmse_finer": ("sr-0.5", "rmse with sub-cells three times as fine along each side"),
     "rmse_converged": ("sr-0.5", "rmse with adaptive integration of the model"),
     "converged": ("", "0: sub-cells change the RMSE by more than 2 %, see rmse_converged"),
+    "integration": ("", "what rmse_converged took: fixed (nothing was suspicious), adaptive, exhausted (given up)"),
     "albedo_reference": ("1", "energy of the reference in the valid cells"),
     "albedo_reference_stderr": ("1", "standard error of albedo_reference"),
     "albedo_model": ("1", "energy of the model in the valid cells"),
@@ -94,6 +95,7 @@ def _row(comparison, found, direction, channel):
         "rmse_finer": rmse(found.finer, direction, channel).rmse,
         "rmse_converged": rmse(found.converged, direction, channel).rmse,
         "converged": int(found.is_converged(direction, channel)),
+        "integration": found.integrated(direction),
         "albedo_reference": float(reference.mean()),
         # Directions are independent of each other; channels share their paths.
         "albedo_reference_stderr": float(((stderr**2).sum(axis=0) ** 0.5 / len(stderr)).mean()),

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..cores import available_cores
 from ..errors import StoppedError
+from ..integration import Pool
 from ..provenance import provenance
 from ..result import Cost, Result
 from ..scene import CHANNELS, effects, parse_scene
@@ -84,12 +85,8 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
 
 def _integrate_direct(plan, threads, stop):
     """`direct_reflection` of every direction; before tracing, so that a stop need not wait for it."""
-
-    def integrate(direction):
-        return None if stop.is_set() else direct_reflection(plan, direction)
-
-    with ThreadPoolExecutor(threads) as pool:
-        return list(pool.map(integrate, range(len(plan.theta_deg))))
+    with Pool(threads) as pool:
+        return [direct_reflection(plan, direction, pool, stop) for direction in range(len(plan.theta_deg))]
 
 
 @dataclass

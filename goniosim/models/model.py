@@ -39,6 +39,11 @@ class Prepared:
     mirror_energy: np.ndarray
     position: list
 
+    @property
+    def channels(self):
+        """Rows that the kernel fills."""
+        return len(self.mirror_energy)
+
     def evaluate(self, x, y, z):
         """BSDF for view directions.
 

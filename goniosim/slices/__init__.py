@@ -1,9 +1,10 @@
 """The cells in which light is counted: one file per slice parametrization.
 
-Every parametrization offers ``cells_of`` (compiled: directions to cell numbers), ``view_direction``
-(compiled: row and column coordinate to a direction and the Jacobian) and ``geometry`` (edges,
-validity, exact solid angles). A new one is one new file, a line in `PARAMETRIZATIONS`, and a line
-in each compiled chooser below.
+Every parametrization offers, compiled, ``cells_of`` (directions to cell numbers), ``view_row`` and
+``view_direction`` (row and column coordinate to a direction and the Jacobian), ``horizon_azimuth`` and
+``horizon_coordinate`` (where the slice ends); and in Python ``coordinates`` (their inverse), ``tilt`` and
+``projected_row`` (exact projected solid angles of parts of cells) and ``geometry`` (validity and solid angles
+of all cells). A new one is one new file, a line in `PARAMETRIZATIONS`, and a line in each compiled chooser below.
 
 Cells are half-open: an edge belongs to the cell with the higher number, and azimuth 360 degrees to
 column 0. A direction within `SNAP` cell widths below an edge counts as on it, so that rounding
@@ -19,7 +20,6 @@ import numpy as np
 
 from .._jit import scalar, stage
 from . import classic, half
-from .grid import HALF_PI
 
 CLASSIC, HALF = range(2)
 PARAMETRIZATIONS = {"classic": (CLASSIC, classic), "half": (HALF, half)}
@@ -35,18 +35,26 @@ def cells_of(parametrization, x, y, z, n, rows, columns, light, cell):
 
 
 @scalar
-def view_direction(parametrization, u, phi, lx, ly, lz):
-    """View direction of a point of the slice and d omega_v / (du dphi); see the parametrizations."""
+def view_row(parametrization, u):
+    """What all points of a row share: see the parametrizations."""
     if parametrization == CLASSIC:
-        return classic.view_direction(u, phi, lx, ly, lz)
-    return half.view_direction(u, phi, lx, ly, lz)
+        return classic.view_row(u)
+    return half.view_row(u)
+
+
+@scalar
+def view_direction(parametrization, sine, cosine, cos_phi, sin_phi, lx, ly, lz):
+    """View direction of a point of the slice; with `view_row`, d omega_v / (du dphi)."""
+    if parametrization == CLASSIC:
+        return classic.view_direction(sine, cosine, cos_phi, sin_phi, lx, ly, lz)
+    return half.view_direction(sine, cosine, cos_phi, sin_phi, lx, ly, lz)
 
 
 @scalar
 def horizon_azimuth(parametrization, u, lx, lz):
     """Azimuth below which, in [0, pi], the points of row coordinate ``u`` lie above the horizon."""
     if parametrization == CLASSIC:
-        return math.pi
+        return classic.horizon_azimuth(u, lx, lz)
     return half.horizon_azimuth(u, lx, lz)
 
 
@@ -54,7 +62,7 @@ def horizon_azimuth(parametrization, u, lx, lz):
 def horizon_coordinate(parametrization, phi, lx, lz):
     """Row coordinate up to which the points of azimuth ``phi`` lie above the horizon."""
     if parametrization == CLASSIC:
-        return HALF_PI
+        return classic.horizon_coordinate(phi, lx, lz)
     return half.horizon_coordinate(phi, lx, lz)
 
 

@@ -18,24 +18,45 @@ def cells_of(x, y, z, n, rows, columns, cell):
 
 
 @scalar
-def view_direction(u, phi, lx, ly, lz):
-    """View direction (x, y, z) of row coordinate ``u``, and d omega_v / (du dphi)."""
+def view_row(u):
+    """Sine and cosine of theta_v on the row coordinate ``u``, and the part of the Jacobian that is theirs."""
     sine = math.sin(u)
-    return sine * math.cos(phi), sine * math.sin(phi), math.cos(u), sine
+    return sine, math.cos(u), sine
 
 
-def mirror_coordinate(theta):
-    """Row coordinate of the mirror direction of the polar angle ``theta``, in radians."""
-    return theta
+@scalar
+def view_direction(sine, cosine, cos_phi, sin_phi, lx, ly, lz):
+    """View direction (x, y, z) from a row and an azimuth, and the rest of d omega_v / (du dphi)."""
+    return sine * cos_phi, sine * sin_phi, cosine, 1.0
 
 
-def lobe_scales(alpha, theta):
-    """Widths in row coordinate and azimuth of the reflection of a GGX lobe of width ``alpha``.
+@scalar
+def horizon_azimuth(u, lx, lz):
+    """Azimuth below which the points of row coordinate ``u`` lie above the horizon: all of them do."""
+    return math.pi
 
-    A half vector tilted by alpha out of the plane of incidence turns the azimuth of v by
-    2 alpha cot(theta): at grazing incidence the lobe is a needle.
-    """
-    return alpha, 2.0 * alpha / max(math.tan(theta), 1e-12)
+
+@scalar
+def horizon_coordinate(phi, lx, lz):
+    """Row coordinate up to which the points of azimuth ``phi`` lie above the horizon."""
+    return HALF_PI
+
+
+def coordinates(direction, light):
+    """Row coordinate of a view direction, and its azimuth from that opposite to the light, in radians."""
+    x, y, z = direction
+    return math.atan2(math.hypot(x, y), z), math.atan2(y, -x)
+
+
+def tilt(u):
+    """Angle theta_v of a row coordinate, an array."""
+    return u
+
+
+def projected_row(u, light):
+    """Coefficients a, b, c of cos(theta_v) d omega_v = (a cos^2(phi) + b cos(phi) + c) du dphi."""
+    none = np.zeros_like(u)
+    return none, none, np.sin(u) * np.cos(u)
 
 
 def geometry(rows, columns, theta):

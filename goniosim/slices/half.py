@@ -38,16 +38,20 @@ def cells_of(x, y, z, n, rows, columns, light, cell):
 
 
 @scalar
-def view_direction(u, phi, lx, ly, lz):
-    """View direction (x, y, z) of row coordinate ``u``, and d omega_v / (du dphi)."""
+def view_row(u):
+    """Sine and cosine of theta_h on the row coordinate ``u``, and the part of the Jacobian that is theirs."""
     theta = u * u / HALF_PI
     sine = math.sin(theta)
-    hx = sine * math.cos(phi)
-    hy = sine * math.sin(phi)
-    hz = math.cos(theta)
-    cosine = lx * hx + ly * hy + lz * hz
-    jacobian = 4.0 * max(0.0, cosine) * sine * (2.0 * u / HALF_PI)
-    return 2.0 * cosine * hx - lx, 2.0 * cosine * hy - ly, 2.0 * cosine * hz - lz, jacobian
+    return sine, math.cos(theta), 4.0 * sine * (2.0 * u / HALF_PI)
+
+
+@scalar
+def view_direction(sine, cosine, cos_phi, sin_phi, lx, ly, lz):
+    """View direction (x, y, z) from a row and an azimuth, and the rest of d omega_v / (du dphi): l.h."""
+    hx = sine * cos_phi
+    hy = sine * sin_phi
+    facet = lx * hx + ly * hy + lz * cosine
+    return 2.0 * facet * hx - lx, 2.0 * facet * hy - ly, 2.0 * facet * cosine - lz, max(0.0, facet)
 
 
 @scalar
@@ -65,14 +69,26 @@ def horizon_coordinate(phi, lx, lz):
     return math.sqrt(0.5 * math.atan2(lz, -lx * math.cos(phi)) * HALF_PI)
 
 
-def mirror_coordinate(theta):
-    """Row coordinate of the mirror direction: h = n whatever the light."""
-    return 0.0
+def coordinates(direction, light):
+    """Row coordinate of a view direction, and its azimuth from that opposite to the light, in radians."""
+    x, y, z = (float(v + w) for v, w in zip(direction, light, strict=True))
+    return math.sqrt(math.atan2(math.hypot(x, y), z) * HALF_PI), math.atan2(y, -x)
 
 
-def lobe_scales(alpha, theta):
-    """Widths in row coordinate and azimuth of the reflection of a GGX lobe of width ``alpha``."""
-    return math.sqrt(alpha * HALF_PI), math.pi
+def tilt(u):
+    """Angle theta_h of a row coordinate, an array."""
+    return u * u / HALF_PI
+
+
+def projected_row(u, light):
+    """Coefficients a, b, c of cos(theta_v) d omega_v = (a cos^2(phi) + b cos(phi) + c) du dphi."""
+    # With d omega_v = 4 (l.h) d omega_h; l.h and v_z are linear in cos(phi_h).
+    sine, _, cosine = light
+    t = tilt(u)
+    jacobian = 4.0 * np.sin(t) * 2.0 * u / HALF_PI
+    p, q = sine * np.sin(t), cosine * np.cos(t)
+    a, b = sine * np.sin(2.0 * t), cosine * np.cos(2.0 * t)
+    return jacobian * p * a, jacobian * (p * b + q * a), jacobian * q * b
 
 
 def geometry(rows, columns, theta):

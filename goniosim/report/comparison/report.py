@@ -1,10 +1,10 @@
 """The folder that a comparison writes: tables, integrated slices, figures; one material at a time."""
 
 from ...compare.comparison import check_usable
-from ...compare.integrate import make_pool
 from ...compare.material import compare_material
 from ...compare.summary import summarise
 from ...errors import OutputError, UnusableResultError
+from ...integration import Pool
 from ...store import open_result, read_header
 from ...store.model_slices import ModelSlicesFile
 from . import files
@@ -74,7 +74,7 @@ class Report:
                 f"{folder}: the folder cannot be created: {error.strerror}; choose another place"
             ) from error
         self._models = ModelSlicesFile(folder / "models.h5", self._origin)
-        self._pool = make_pool()
+        self._pool = Pool()
 
     def close(self):
         """Release what is open; an unfinished file of slices is removed."""

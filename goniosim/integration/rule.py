@@ -1,0 +1,154 @@
+"""Gauss-Legendre rules on rectangles of a slice, cut where the horizon leaves them."""
+
+import math
+
+import numpy as np
+
+from .._jit import kernel, stage
+from ..slices import horizon_azimuth, horizon_coordinate, view_direction, view_row
+from .pool import BLOCK
+
+# Columns of a table of rectangles, in radians: lower row coordinate and azimuth, and the two widths. The
+# azimuth is measured from the mirror direction, pi - phi: there lobes can be needles narrower than the
+# spacing of the numbers around pi.
+U, PSI, D_U, D_PSI = range(4)
+
+
+class Rule:
+    """A product rule of n x n nodes on the unit square.
+
+    Parameters
+    ----------
+    n : int
+
+    Attributes
+    ----------
+    nodes, weights : ndarray, shape (n,)
+    bend : ndarray, shape (n,)
+        Functional of the values at the nodes that is zero for all polynomials of degree n - 2, and at
+        most the largest value: how much a function bends along one side.
+    """
+
+    def __init__(self, n):
+        x, w = np.polynomial.legendre.leggauss(n)
+        self.nodes = 0.5 * (1.0 + x)
+        self.weights = 0.5 * w
+        # The divided difference of the highest order.
+        difference = np.array([1.0 / np.prod(x[i] - np.delete(x, i)) for i in range(n)])
+        self.bend = difference / np.abs(difference).sum()
+
+
+def evaluate(density, grid, rule, rectangles, pool):
+    """Apply a rule to rectangles of a slice.
+
+    Parameters
+    ----------
+    density : Density
+    grid : Grid
+    rule : Rule
+    rectangles : ndarray, shape (n, 4)
+    pool : Pool
+
+    Returns
+    -------
+    energy : ndarray, shape (channels, n)
+    bends : ndarray, shape (2, n)
+        How much the integrand bends along u and along psi, relative to its mean, in the channel where it
+        bends most.
+    """
+    per_rectangle = len(rule.nodes) ** 2
+    energy = np.empty((density.channels, len(rectangles)))
+    bends = np.empty((2, len(rectangles)))
+    step = max(1, BLOCK // per_rectangle)
+    light = grid.light
+
+    def work(start):
+        part = rectangles[start : start + step]
+        x, y, z, weight = np.empty((4, len(part) * per_rectangle))
+        values = np.empty((len(energy), len(x)))
+        fill(grid.code, light, part, rule.nodes, x, y, z, weight)
+        density.kernel(density.tables, density.light, x, y, z, values)
+        add_up(values, weight, rule.weights, rule.bend, start, energy, bends)
+
+    pool.in_blocks(work, len(rectangles), step)
+    return energy, bends
+
+
+@kernel
+def fill(code, light, rectangles, nodes, x, y, z, weight):
+    """View directions at the nodes of rectangles, and cos(theta_v) d omega_v over the weights of the rule."""
+    lx = light[0]
+    ly = light[1]
+    lz = light[2]
+    n = nodes.shape[0]
+    cosines = np.empty(n)
+    sines = np.empty(n)
+    at = 0
+    for k in range(rectangles.shape[0]):
+        u = rectangles[k, U]
+        psi = rectangles[k, PSI]
+        d_u = rectangles[k, D_U]
+        d_psi = rectangles[k, D_PSI]
+        is_cut = horizon_coordinate(code, math.pi - psi, lx, lz) < u + d_u
+        width = d_psi
+        _turn(psi, width, nodes, cosines, sines)
+        for i in range(n):
+            here = u + d_u * nodes[i]
+            sine, cosine, row_factor = view_row(code, here)
+            if is_cut:
+                # Only the azimuths above the horizon, which would be a kink in the integrand.
+                hidden = min(max(math.pi - horizon_azimuth(code, here, lx, lz) - psi, 0.0), d_psi)
+                width = d_psi - hidden
+                _turn(psi + hidden, width, nodes, cosines, sines)
+            area = d_u * width * row_factor
+            for j in range(n):
+                vx, vy, vz, factor = view_direction(code, sine, cosine, cosines[j], sines[j], lx, ly, lz)
+                x[at] = vx
+                y[at] = vy
+                # Rounding must not hide what lies in the horizon.
+                z[at] = max(vz, 1e-12)
+                weight[at] = area * factor * max(vz, 0.0)
+                at += 1
+
+
+@stage
+def _turn(psi, width, nodes, cosines, sines):
+    for j in range(nodes.shape[0]):
+        azimuth = psi + width * nodes[j]
+        cosines[j] = -math.cos(azimuth)
+        sines[j] = math.sin(azimuth)
+
+
+@kernel
+def add_up(values, weight, weights, bend, start, energy, bends):
+    """Integrals and bends of the rectangles from number ``start`` on, from the values at all nodes."""
+    n = weights.shape[0]
+    count = weight.shape[0] // (n * n)
+    for k in range(start, start + count):
+        bends[0, k] = 0.0
+        bends[1, k] = 0.0
+    down = np.empty(n)
+    for c in range(values.shape[0]):
+        for k in range(count):
+            total = 0.0
+            along_u = 0.0
+            along_psi = 0.0
+            for j in range(n):
+                down[j] = 0.0
+            for i in range(n):
+                row = 0.0
+                across = 0.0
+                for j in range(n):
+                    at = (k * n + i) * n + j
+                    f = values[c, at] * weight[at]
+                    row += weights[j] * f
+                    across += bend[j] * f
+                    down[j] += bend[i] * f
+                total += weights[i] * row
+                along_psi += weights[i] * abs(across)
+            for j in range(n):
+                along_u += weights[j] * abs(down[j])
+            energy[c, start + k] = total
+            if total > 0.0:
+                bends[0, start + k] = max(bends[0, start + k], along_u / total)
+                bends[1, start + k] = max(bends[1, start + k], along_psi / total)
