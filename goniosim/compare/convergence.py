@@ -2,7 +2,7 @@
 
 Only some cells can be wrong: those in which the values at the sub-cells differ much, their
 neighbours (a narrow lobe may stand between the sub-cells of one cell and show in the next), and
-those around the mirror direction. In all others the error of the midpoint rule is of the order
+those around the mirror direction of a lobe that is not wider than they are. In all others the error of the midpoint rule is of the order
 of spread^2 / (24 n^2), below 1e-3.
 """
 
@@ -18,6 +18,8 @@ SPREAD = 0.25
 FINER = 3
 # Error of a converged slice, relative to the root of the integral of f^2 cos(theta_v).
 TOLERANCE = 1e-3
+# Error of the parts of a cell, relative to the cell, that is small enough whatever the slice holds.
+RELATIVE = 1e-4
 NODES = 3
 
 
@@ -59,7 +61,8 @@ def converge(prepared, grid, n, pool, coarse, spread, narrowest):
     -------
     Levels
     """
-    suspects = _suspects(prepared, grid, spread)
+    lobe = find_lobe(grid, prepared.light, narrowest)
+    suspects = _suspects(prepared, grid, spread, lobe)
     finer, converged = coarse.copy(), coarse.copy()
     if not len(suspects):
         return Levels(coarse, finer, converged, "fixed")
@@ -73,24 +76,27 @@ def converge(prepared, grid, n, pool, coarse, spread, narrowest):
         grid,
         pool,
         numbers,
+        # The finer sub-cells may have missed all there is: then the budget says nothing.
+        relative=RELATIVE,
         absolute=np.sqrt(budget * size[suspects]),
-        lobe=find_lobe(grid, prepared.light, narrowest),
+        lobe=lobe,
         nodes=NODES,
     )
     converged[:, suspects] = found.energy
     return Levels(coarse, finer, converged, "exhausted" if found.exhausted.any() else "adaptive")
 
 
-def _suspects(prepared, grid, spread):
+def _suspects(prepared, grid, spread, lobe):
     """Places in ``grid.numbers`` of the cells in which a finer division can matter."""
     marked = np.zeros(grid.rows * grid.half_columns, bool)
     marked[grid.numbers] = spread > SPREAD
     slices = grid.unfold(marked).copy()
-    lx, ly, lz = prepared.light
-    row, column = grid.cell_of((-lx, -ly, lz))
-    slices[row, column] = True
-    if row == 0:
-        slices[0] = True
+    if lobe.scale_u < 0.5 * np.pi / grid.rows or lobe.scale_psi < 2.0 * np.pi / grid.columns:
+        lx, ly, lz = prepared.light
+        row, column = grid.cell_of((-lx, -ly, lz))
+        slices[row, column] = True
+        if row == 0:
+            slices[0] = True
     rows, columns = np.nonzero(slices)
     grown = np.zeros_like(slices)
     for i in (-1, 0, 1):

@@ -90,18 +90,20 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
     spent = np.zeros(n, np.int64)
     rectangles, owner, copies = whole_cells(grid, numbers)
     whole, bends = evaluate(density, grid, rule, rectangles, pool)
+    square = np.zeros(len(rectangles), bool)
     for level in range(MAX_LEVELS):
         parts = np.empty((MOST_PARTS * len(rectangles), 4))
         parent = np.empty(len(parts), np.int64)
         premature = np.empty(len(rectangles), bool)
-        count = divide(grid.code, light, peak, rectangles, bends, premature, parts, parent)
+        count = divide(grid.code, light, peak, rectangles, bends, square, premature, parts, parent)
         parts, parent = parts[:count], parent[:count]
         values, part_bends = evaluate(density, grid, rule, parts, pool)
         sums = _added(values, parent, len(rectangles))
         difference = np.abs(sums - whole)
         estimate = settled_energy + _added(sums, owner, n)
         tolerance = (relative * np.abs(estimate) + absolute)[:, owner]
-        fine = (difference <= tolerance).all(axis=0) & ~premature
+        close = (difference <= tolerance).all(axis=0)
+        fine = close & ~premature
         spent += np.bincount(owner[parent], minlength=n)
         given_up = ~fine & ((spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1))
         exhausted[owner[given_up]] = True
@@ -112,6 +114,8 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
             break
         again = ~done[parent]
         rectangles, whole, bends = parts[again], values[:, again], part_bends[:, again]
+        # Divided along one side and close: the other side is still to be tried.
+        square = close[parent[again]]
         owner = owner[parent[again]]
     return settled_energy * copies, error * copies, exhausted
 

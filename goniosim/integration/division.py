@@ -80,7 +80,7 @@ def _emit(code, light, u, psi, d_u, d_psi, rectangles, n):
 
 
 @kernel
-def divide(code, light, lobe, rectangles, bends, premature, parts, parent):
+def divide(code, light, lobe, rectangles, bends, square, premature, parts, parent):
     """Divide every rectangle.
 
     Parameters
@@ -92,6 +92,8 @@ def divide(code, light, lobe, rectangles, bends, premature, parts, parent):
     rectangles : ndarray, shape (n, 4)
     bends : ndarray, shape (2, n)
         From `rule.evaluate`.
+    square : ndarray of bool, shape (n,)
+        Rectangles to be divided along both sides alike, whatever they look like.
     premature : ndarray of bool, shape (n,), out
         Whether the parts cannot tell the error of the whole: it holds the peak of the lobe and is too large
         to show it, or it was divided along one side only. In all other cases the error shows along both.
@@ -118,12 +120,14 @@ def divide(code, light, lobe, rectangles, bends, premature, parts, parent):
             # Across only, as long as the lobe looks narrower from there.
             n_psi = 1 if long_u > LOPSIDED * long_psi else (4 if long_psi > LOPSIDED * long_u else 2)
             n_u = 1 if n_psi == 4 else (4 if n_psi == 1 else 2)
-        else:
+        elif not square[k]:
             if bends[0, k] > max(BENT, LOPSIDED * bends[1, k]):
                 n_psi = 1
             elif bends[1, k] > max(BENT, LOPSIDED * bends[0, k]):
                 n_u = 1
             premature[k] = n_u * n_psi == 2
+        else:
+            premature[k] = False
         before = count
         for i in range(n_u):
             for j in range(n_psi):

@@ -7,6 +7,8 @@ import pytest
 
 import goniosim
 from goniosim.compare.measures import rmse
+from goniosim.compare.rows import material_rows
+from goniosim.integration import adaptive
 from reference.closed_forms import fresnel_dielectric, refracted_cosine
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
@@ -75,6 +77,39 @@ def test_a_spike_on_the_corner_of_four_cells_is_missed_by_5_by_5_and_marked():
     row = comparison.result.cells.row_edges.searchsorted(85.0)
     energy = comparison.slices["ww09", "reflection/internal"].energy[0, 0]
     assert energy[row - 1 : row + 1, 179:181].sum() < 0.2 * found.converged.albedo_model[0, 0]
+
+
+@pytest.mark.parametrize("parametrization", ["classic", "half"])
+@pytest.mark.parametrize("theta_deg", [30.0, 85.0, 89.999])
+@pytest.mark.parametrize("alpha", [1e-2, 1e-4, 1e-6])
+def test_a_lobe_is_never_vouched_for_when_it_was_missed(parametrization, theta_deg, alpha):
+    """A bare rough conductor, which ww09 computes exactly; at 89.999 degrees its lobe is 3.5e-11 rad wide.
+
+    Sub-cells miss it, and so did adaptive integration once, which called its error of 100 % converged.
+    """
+    scene = make_scene([conductor(0.2, 3.9, alpha)], theta_deg, parametrization, rows=30, columns=60)
+    found = compare(scene, ["ww09"], rays=1_000).compared[0]
+    norm = math.sqrt(found.measures.norm[0, 0])
+    assert rmse(found.converged).rmse < 1e-3 * norm
+    assert found.integrated() in ("adaptive", "fixed")
+    if found.is_converged():
+        assert rmse(found.measures).rmse < 0.02 * norm
+
+
+def test_an_integration_that_was_given_up_is_marked_and_vouches_for_nothing(monkeypatch):
+    scene = make_scene([conductor(0.2, 3.9, 0.01)], [0.0, 60.0], rows=18, columns=24)
+    monkeypatch.setattr(adaptive, "MAX_PARTS", 4)
+    comparison = compare(scene, ["ww09", "bati19_belcour"], rays=1_000)
+    rows = material_rows(comparison)
+    assert {row["integration"] for row in rows} == {"exhausted"}
+    assert {row["converged"] for row in rows} == {0}
+
+
+def test_a_broad_density_needs_no_refinement():
+    scene = make_scene([lambert(0.5)], 30.0, rows=18, columns=24)
+    (found, *_) = compare(scene, ["bati19_ww"], rays=1_000).compared
+    assert found.integration == ["fixed"] and found.is_converged()
+    np.testing.assert_array_equal(found.measures.squared, found.converged.squared)
 
 
 def test_eq_6_and_forward_agree_on_internal_paths_and_eq_6_is_exact_on_direct_ones():
