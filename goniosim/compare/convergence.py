@@ -2,8 +2,8 @@
 
 Only some cells can be wrong: those in which the values at the sub-cells differ much, their
 neighbours (a narrow lobe may stand between the sub-cells of one cell and show in the next), and
-those around the mirror direction of a lobe that is not wider than they are. In all others the error of the midpoint rule is of the order
-of spread^2 / (24 n^2), below 1e-3.
+those around the mirror direction of a lobe that is not wider than they are. In all others the
+error of the midpoint rule is of the order of spread^2 / (24 n^2), below 1e-3.
 """
 
 from dataclasses import dataclass
