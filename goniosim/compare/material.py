@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..models import MODELS, prepare
-from ..result import Component
-from ..scene import parse_scene
+from ..result import Component, Result
+from ..scene import Scene, parse_scene
 from .grid import make_grid
 from .integrate import integrate, to_slice
 from .measures import Measures, measure, rmse
@@ -93,8 +93,8 @@ class MaterialComparison:
         By label of the variant and component, ``reflection`` only where a model does not split it.
     """
 
-    result: object
-    scene: object
+    result: Result
+    scene: Scene
     subcells: int
     variants: list
     not_applicable: dict

@@ -39,7 +39,7 @@ class Prepared:
     mirror_energy: np.ndarray
     position: list
 
-    def evaluate(self, x, y, z):
+    def evaluate(self, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """BSDF for view directions.
 
         Parameters

@@ -1,9 +1,11 @@
 """Which orders of layers make sense."""
 
+from collections.abc import Sequence
+
 OPAQUE = ("conductor", "lambert")
 
 
-def structure_mistakes(kinds):
+def structure_mistakes(kinds: Sequence[str | None]) -> list[tuple[tuple[int, ...], str]]:
     """Find what is wrong with the order of the layers.
 
     Parameters
@@ -21,7 +23,7 @@ def structure_mistakes(kinds):
     """
     if not kinds:
         return [((), "must hold at least one interface: a material without layers scatters no light")]
-    found = []
+    found: list[tuple[tuple[int, ...], str]] = []
     if kinds[0] == "medium":
         found.append(((0,), "must be an interface: the stack begins at its top interface, with air above"))
     base = next((index for index, kind in enumerate(kinds) if kind in OPAQUE), None)
