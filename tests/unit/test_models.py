@@ -82,6 +82,7 @@ def test_models_apply_or_say_why_not(name, component, base):
         (("ww09", 30, 40, 0, "reflection", {"masking": "seperable"}), "masking.*did you mean separable"),
         (("ww09", 30, 40, 0, "reflection", {"jacobian": "snell"}), "no option 'jacobian'"),
         (("ww09", 30, 40, 0, "reflection", "masking"), "options must be a mapping"),
+        (("ww09", 30, 40, 0, "reflection", MODELS["ww09"].options), "options must be a mapping"),
     ],
 )
 def test_wrong_arguments_are_explained(arguments, message):
