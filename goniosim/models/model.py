@@ -75,7 +75,8 @@ class Model:
     options : type
         Frozen dataclass of its options, see `goniosim.models.options`.
     supports : callable
-        ``supports(scene, component)``: None if the model applies, else one sentence why not.
+        ``supports(scene, component)``: None if the model applies, else one sentence why not. What
+        applies to any component applies to ``reflection``; direct and internal go together.
     prepare : callable
         ``prepare(scene, theta_i_deg, component, options) -> Prepared``.
     """

@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 
-OPAQUE = ("conductor", "lambert")
+from goniosim.scene.layers import INTERFACES
+
+OPAQUE = {name for name, interface in INTERFACES.items() if interface.opaque}
 
 
 def structure_mistakes(kinds: Sequence[str | None]) -> list[tuple[tuple[int, ...], str]]:
@@ -11,9 +13,9 @@ def structure_mistakes(kinds: Sequence[str | None]) -> list[tuple[tuple[int, ...
     Parameters
     ----------
     kinds : list of str or None
-        From top to bottom ``medium``, ``dielectric``, ``conductor`` or
-        ``lambert``; None for a layer whose kind could not be made out, to
-        which the benefit of the doubt is given.
+        From top to bottom ``medium``, or the type of an interface; None for a
+        layer whose kind could not be made out, to which the benefit of the
+        doubt is given.
 
     Returns
     -------
