@@ -95,8 +95,9 @@ def test_directions_and_cell_numbers_of_a_parametrization_agree(parametrization)
     assert valid.sum() > 0.4 * valid.size
     assert (found == np.arange(len(x)))[valid].all()
     # The midpoint rule, on cells of 4 degrees.
-    assert np.allclose((jacobian * size)[valid], geometry.solid_angle.ravel()[valid], rtol=0.05, atol=1e-4)
-    assert np.isclose(geometry.projected_solid_angle.sum(), math.pi, rtol=1e-9)
+    projected = geometry.projected_solid_angle.ravel()
+    assert np.allclose((jacobian * z * size)[valid], projected[valid], rtol=0.05, atol=1e-4)
+    assert np.isclose(projected.sum(), math.pi, rtol=1e-9)
 
 
 def test_figures_know_a_parametrization(parametrization):
