@@ -5,6 +5,7 @@ CONTRIBUTING.md draws the same map for people. Imports inside functions and for 
 
 import ast
 import graphlib
+import re
 import statistics
 from pathlib import Path
 
@@ -183,6 +184,26 @@ def test_a_wrong_way_and_a_circle_are_found(tmp_path):
     del made["goniosim.engine.plan"]
     # Through the packages: engine needs optics.lens, which needs optics and engine.walk, which needs engine.
     assert "goniosim.optics.lens" in circle(made)
+
+
+GUIDE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+
+
+def test_the_map_for_people_is_the_same():
+    rows = re.findall(r"^\| `(\w+)` \|.*\|(.*)\|$", GUIDE, re.MULTILINE)
+    drawn = {name.replace("cli", "goniosim_cli"): set(re.findall(r"`(\w+)`", targets)) for name, targets in rows}
+    assert drawn == {name: targets for name, targets in MAY_IMPORT.items() if name not in GROUND}
+
+
+def test_what_the_guide_points_at_exists():
+    """Files and folders, and the names in them: written as `path`, or as `path`, `name`."""
+    folders = r"goniosim|cli|tests|benchmarks|configs|docs|\.ci"
+    pointers = re.findall(rf"[`(]((?:{folders})/[\w./]+)[`)](?:,\s`(\w+)`)?", GUIDE)
+    assert len(pointers) > 60
+    for path, name in pointers:
+        assert (ROOT / path).exists(), path
+        if name:
+            assert re.search(rf"^(def |class )?{name}\b", (ROOT / path).read_text(encoding="utf-8"), re.MULTILINE), name
 
 
 def lengths():
