@@ -3,8 +3,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+LINTERS := $(VENV)/.linters
 
-.PHONY: demo install test test-all bench clean
+.PHONY: demo install lint test test-all bench clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -15,6 +16,15 @@ install: $(STAMP)
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet -c constraints.txt -e ".[test]"
+	touch $@
+
+lint: $(LINTERS)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+$(LINTERS): $(STAMP)
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e ".[lint]"
 	touch $@
 
 test: $(STAMP)

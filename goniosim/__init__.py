@@ -8,7 +8,23 @@
 Importing the package loads nothing heavy: each name brings its own machinery when first used.
 """
 
+from __future__ import annotations
+
 from importlib import import_module as _import_module
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+
+if _TYPE_CHECKING:
+    import os
+    import threading
+    from collections.abc import Callable
+
+    from goniosim.compare import compare
+    from goniosim.models import evaluate_model
+    from goniosim.result import Result
+    from goniosim.scene import Scene, load_scene
+    from goniosim.store import open_result
+
+    __version__: str
 
 __all__ = ["__version__", "compare", "evaluate_model", "load_scene", "open_result", "simulate"]
 
@@ -19,7 +35,15 @@ _HOMES = {
 }
 
 
-def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):
+def simulate(
+    scene: Scene | str | os.PathLike[str],
+    *,
+    rays: int | None = None,
+    seed: int | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+    stop: threading.Event | None = None,
+) -> Result:
     """Simulate the goniometer measurement of one material.
 
     Parameters
@@ -57,7 +81,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     return engine.simulate(scene, rays=rays, seed=seed, threads=threads, progress=progress, stop=stop)
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> object:
     if name in _HOMES:
         value = getattr(_import_module(_HOMES[name]), name)
     elif name == "compare":
@@ -71,5 +95,5 @@ def __getattr__(name):
     return value
 
 
-def __dir__():
+def __dir__() -> list[str]:
     return sorted(__all__)

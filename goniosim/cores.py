@@ -3,7 +3,7 @@
 import os
 
 
-def available_cores():
+def available_cores() -> int:
     """Cores this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

@@ -21,6 +21,8 @@ code  meaning
 ====  =========================================================
 """
 
+from collections.abc import Iterable
+
 
 class GoniosimError(Exception):
     """Base of all errors that are explained to the user in one line."""
@@ -39,7 +41,7 @@ class ConfigError(GoniosimError):
 
     exit_code = 3
 
-    def __init__(self, problems):
+    def __init__(self, problems: str | Iterable[str]) -> None:
         self.problems = [problems] if isinstance(problems, str) else list(problems)
         super().__init__("\n".join(self.problems))
 

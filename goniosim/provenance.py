@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 
 
-def provenance(threads):
+def provenance(threads: int) -> dict[str, str]:
     """Provenance of a result or a report.
 
     Parameters

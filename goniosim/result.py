@@ -92,9 +92,9 @@ class Audit:
     direct_integrated_stderr: np.ndarray
 
     @property
-    def residual(self):
+    def residual(self) -> np.ndarray:
         """1 minus the sum of all entries, shape (M, C): rounding only."""
-        return 1.0 - sum(self.energy.values())
+        return 1.0 - np.sum(list(self.energy.values()), axis=0)
 
 
 AUDIT_ENTRIES = {

@@ -1,8 +1,10 @@
 """The comparison of published models with simulated slices: what `goniosim.compare` does."""
 
 import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ..errors import ConfigError, UnusableResultError
 from ..integration import Pool
@@ -13,6 +15,9 @@ from .rows import material_rows
 from .variants import check_request
 
 MAX_SUBCELLS = 99
+
+StrPath = str | os.PathLike[str]
+Source = Result | StrPath
 
 
 @dataclass(frozen=True)
@@ -28,9 +33,11 @@ class Comparison:
     """
 
     materials: list[MaterialComparison]
-    errors: list[dict]
+    errors: list[dict[str, Any]]
 
-    def rows(self, component=None, channel="mean", theta_deg="all"):
+    def rows(
+        self, component: str | None = None, channel: str = "mean", theta_deg: float | str = "all"
+    ) -> list[dict[str, Any]]:
         """Rows of the table in which a model applies.
 
         Parameters
@@ -55,7 +62,14 @@ class Comparison:
         ]
 
 
-def compare(results, models=None, options=None, subcells=5, *, allow_partial=False):
+def compare(
+    results: Source | Sequence[Source],
+    models: Sequence[str] | None = None,
+    options: Mapping[str, Mapping[str, object]] | None = None,
+    subcells: int = 5,
+    *,
+    allow_partial: bool = False,
+) -> Comparison:
     """Compare published models with simulated slices.
 
     Each model is integrated over the very cells of the result, and its error is Eq. 4 of Bati et
@@ -90,11 +104,11 @@ def compare(results, models=None, options=None, subcells=5, *, allow_partial=Fal
     """
     request = check_request(models, options)
     check_subcells(subcells)
-    sources = results if isinstance(results, (list, tuple)) else [results]
-    found = []
+    sources = [results] if isinstance(results, Result | str | os.PathLike) else results
+    found: list[Result | Path] = []
     for source in sources:
         found += [source] if isinstance(source, Result) else result_files(source)
-    materials = []
+    materials: list[MaterialComparison] = []
     with Pool() as pool:
         for each in found:
             result = each if isinstance(each, Result) else open_result(each)
@@ -105,13 +119,13 @@ def compare(results, models=None, options=None, subcells=5, *, allow_partial=Fal
     return Comparison(materials, [row for material in materials for row in material_rows(material)])
 
 
-def check_subcells(subcells):
+def check_subcells(subcells: int) -> None:
     """Raise a ConfigError if ``subcells`` is not a sensible number."""
     if not isinstance(subcells, int) or not 1 <= subcells <= MAX_SUBCELLS:
         raise ConfigError(f"subcells must be a whole number from 1 to {MAX_SUBCELLS} [got {subcells!r}]")
 
 
-def check_usable(result, allow_partial):
+def check_usable(result: Result, allow_partial: bool) -> None:
     """Raise an UnusableResultError if a result cannot be compared with.
 
     Parameters
@@ -127,7 +141,7 @@ def check_usable(result, allow_partial):
         raise UnusableResultError(f"{result.name}: has incident directions without a single ray; simulate it again")
 
 
-def result_files(path):
+def result_files(path: StrPath) -> list[Path]:
     """Result files that a path stands for.
 
     Parameters

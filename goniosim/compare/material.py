@@ -7,8 +7,8 @@ import numpy as np
 
 from ..integration import integrate_fixed
 from ..models import MODELS, prepare
-from ..result import Component
-from ..scene import parse_scene
+from ..result import Component, Result
+from ..scene import Scene, parse_scene
 from .cells import grid_of, to_bsdf, to_slice
 from .convergence import converge
 from .measures import Measures, measure, rmse
@@ -105,8 +105,8 @@ class MaterialComparison:
         By label of the variant and component, ``reflection`` only where a model does not split it.
     """
 
-    result: object
-    scene: object
+    result: Result
+    scene: Scene
     subcells: int
     variants: list
     not_applicable: dict

@@ -1,16 +1,26 @@
 """Models by name: their options, and their values in given directions."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from goniosim.errors import ConfigError
+from goniosim.scene import Scene
 from goniosim.scene.problems import closest, listed
 
-from .model import COMPONENTS
-from .options import describe, parse_options
+from .model import COMPONENTS, Model, Prepared
+from .options import OptionInfo, describe, parse_options
 from .registry import MODELS
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
-def find_model(name):
+
+def find_model(name: str) -> Model:
     """The model of that name.
 
     Parameters
@@ -31,7 +41,7 @@ def find_model(name):
     return MODELS[name]
 
 
-def describe_options(name):
+def describe_options(name: str) -> list[OptionInfo]:
     """Options of a model.
 
     Parameters
@@ -50,7 +60,13 @@ def describe_options(name):
     return describe(find_model(name).options)
 
 
-def prepare(name, scene, theta_i_deg, component="reflection", options=None):
+def prepare(
+    name: str,
+    scene: Scene,
+    theta_i_deg: float,
+    component: str = "reflection",
+    options: Mapping[str, object] | DataclassInstance | None = None,
+) -> Prepared:
     """Make a model ready for one material, one incident direction and one component.
 
     Parameters
@@ -87,7 +103,15 @@ def prepare(name, scene, theta_i_deg, component="reflection", options=None):
     return model.prepare(scene, float(theta_i_deg), component, chosen)
 
 
-def evaluate_model(name, scene, theta_i_deg, theta_o_deg, phi_o_deg, component="reflection", options=None):
+def evaluate_model(
+    name: str,
+    scene: Scene,
+    theta_i_deg: ArrayLike,
+    theta_o_deg: ArrayLike,
+    phi_o_deg: ArrayLike,
+    component: str = "reflection",
+    options: Mapping[str, object] | DataclassInstance | None = None,
+) -> np.ndarray:
     """BSDF of a material according to an analytic model.
 
     Parameters
@@ -104,7 +128,7 @@ def evaluate_model(name, scene, theta_i_deg, theta_o_deg, phi_o_deg, component="
         through leaves at azimuth 180. The three arguments broadcast.
     component : str
         ``reflection``, ``reflection/direct``, ``reflection/internal`` or ``transmission``.
-    options : mapping, optional
+    options : mapping or options dataclass, optional
         Options of the model, see `describe_options`.
 
     Returns
@@ -136,7 +160,7 @@ def evaluate_model(name, scene, theta_i_deg, theta_o_deg, phi_o_deg, component="
     return values.reshape((3, *theta_i.shape))
 
 
-def _choose(word, known):
+def _choose(word: str, known: Iterable[str]) -> str:
     known = list(known)
     guess = closest(word, known)
     return f"choose {listed(known, 'or')}" + (f" (did you mean {guess}?)" if guess else "")

@@ -40,11 +40,11 @@ class Prepared:
     position: list
 
     @property
-    def channels(self):
+    def channels(self) -> int:
         """Rows that the kernel fills."""
         return len(self.mirror_energy)
 
-    def evaluate(self, x, y, z):
+    def evaluate(self, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """BSDF for view directions.
 
         Parameters
@@ -80,7 +80,8 @@ class Model:
     options : type
         Frozen dataclass of its options, see `goniosim.models.options`.
     supports : callable
-        ``supports(scene, component)``: None if the model applies, else one sentence why not.
+        ``supports(scene, component)``: None if the model applies, else one sentence why not. What
+        applies to any component applies to ``reflection``; direct and internal go together.
     prepare : callable
         ``prepare(scene, theta_i_deg, component, options) -> Prepared``.
     """

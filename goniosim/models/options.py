@@ -1,10 +1,16 @@
 """Options of the models: frozen dataclasses whose fields carry their allowed values and meaning."""
 
+from __future__ import annotations
+
 import dataclasses
 from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from goniosim.errors import ConfigError
 from goniosim.scene.problems import closest, listed
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 
 @dataclasses.dataclass(frozen=True)
@@ -13,16 +19,16 @@ class OptionInfo:
 
     name: str
     default: object
-    values: tuple
+    values: tuple[Any, ...]
     meaning: str
 
 
-def option(values, meaning):
+def option(values: tuple[Any, ...], meaning: str) -> Any:
     """A field of an options dataclass; the first of ``values`` is the default."""
     return dataclasses.field(default=values[0], metadata={"values": values, "meaning": meaning})
 
 
-def masking_option():
+def masking_option() -> Any:
     """How the masking of light and view combine; the same choice in every model."""
     return option(
         ("separable", "correlated"),
@@ -30,7 +36,7 @@ def masking_option():
     )
 
 
-def describe(options):
+def describe(options: type[DataclassInstance]) -> list[OptionInfo]:
     """List the options of an options dataclass.
 
     Returns
@@ -43,7 +49,7 @@ def describe(options):
     ]
 
 
-def parse_options(name, options, given):
+def parse_options(name: str, options: type[DataclassInstance], given: object) -> Any:
     """Check the options given for a model.
 
     Parameters
@@ -66,12 +72,13 @@ def parse_options(name, options, given):
     """
     if given is None:
         given = {}
-    if dataclasses.is_dataclass(given):
+    if dataclasses.is_dataclass(given) and not isinstance(given, type):
         given = dataclasses.asdict(given)
     if not isinstance(given, Mapping):
         raise ConfigError(f"model {name}: options must be a mapping of names to values [got {given!r}]")
     known = {info.name: info for info in describe(options)}
-    accepted, problems = {}, []
+    accepted: dict[str, Any] = {}
+    problems: list[str] = []
     for key, value in given.items():
         if key not in known:
             problems.append(f"model {name}: has no option {key!r}; {_choice(key, list(known))}")
@@ -87,6 +94,6 @@ def parse_options(name, options, given):
     return options(**accepted)
 
 
-def _choice(word, known):
+def _choice(word: object, known: list[str]) -> str:
     guess = closest(word, known)
     return f"choose {listed(known, 'or')}" + (f" (did you mean {guess}?)" if guess else "")

@@ -3,14 +3,15 @@
 from typing import get_args
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
-from goniosim.scene.layers import INTERFACES, Layer, Medium
+from goniosim.scene.layers import INTERFACES, Layer, Medium, Part
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
-from goniosim.scene.problems import closest, listed
+from goniosim.scene.problems import Problem, closest, listed
 from goniosim.scene.structure import structure_mistakes
-from goniosim.scene.tree import locate, plain
+from goniosim.scene.tree import Node, Path, locate, plain
 
-MAPPINGS = {
+MAPPINGS: dict[str, type[Part]] = {
     "material": Material,
     "incident": Incident,
     "slice": Slice,
@@ -18,7 +19,7 @@ MAPPINGS = {
     "medium": Medium,
     **INTERFACES,
 }
-CHOICES = {
+CHOICES: dict[str, tuple[str, ...]] = {
     "type": tuple(INTERFACES),
     "parametrization": get_args(Slice.model_fields["parametrization"].annotation),
     "estimator": get_args(Simulation.model_fields["estimator"].annotation),
@@ -26,7 +27,7 @@ CHOICES = {
 _LAYER = list(Layer.model_fields)
 
 
-def check(node):
+def check(node: Node) -> tuple[Scene | None, list[Problem]]:
     """Turn the raw content of a scene file into a scene.
 
     Parameters
@@ -47,7 +48,7 @@ def check(node):
     return (None, problems) if problems else (scene, [])
 
 
-def _structure_problems(node):
+def _structure_problems(node: Node) -> list[Problem]:
     # The models check the order of the layers too, but only once every single layer is sound.
     layers, rest = locate(node, ("material", "layers"))
     if rest or not isinstance(layers.value, list):
@@ -58,7 +59,7 @@ def _structure_problems(node):
     ]
 
 
-def _kind(layer):
+def _kind(layer: Node) -> str | None:
     interface = layer.child("interface")
     if interface is not None:
         kind = interface.child("type")
@@ -66,7 +67,7 @@ def _kind(layer):
     return "medium" if layer.child("medium") is not None else None
 
 
-def _translate(root, detail):
+def _translate(root: Node, detail: ErrorDetails) -> Problem:
     """Word one of pydantic's errors as a Problem."""
     # Pydantic puts the kind of an interface into the path, where the file has no key of that name.
     location = detail["loc"]
@@ -85,10 +86,10 @@ def _translate(root, detail):
             got=False,
             suggestion=closest(location[-1], known),
         )
-    if kind in ("literal_error", "union_tag_invalid"):
-        name = "type" if kind == "union_tag_invalid" else path[-1]
-        chosen = node.child("type") if kind == "union_tag_invalid" else node
-        return _wrong_choice(chosen, CHOICES[name])
+    if kind == "literal_error":
+        return _wrong_choice(node, CHOICES[str(path[-1])])
+    if kind == "union_tag_invalid":
+        return _wrong_choice(locate(node, ("type",))[0], CHOICES["type"])
     if kind == "tuple_type":
         return node.problem("must be a list: begin each entry with `- `")
     if kind in ("model_type", "model_attributes_type"):
@@ -97,13 +98,13 @@ def _translate(root, detail):
     return _explain(node, path, detail["msg"])
 
 
-def _explain(node, path, message):
+def _explain(node: Node, path: Path, message: str) -> Problem:
     # Where a mapping belongs, a mistake in it as a whole lies in the entries that the message names.
     whole = path[-1] in MAPPINGS or path[-2:-1] == ("layers",)
     return node.problem(message, got=not whole)
 
 
-def _known(location):
+def _known(location: Path) -> list[str]:
     """Keys of the mapping at a location as pydantic gives it."""
     if not location:
         return list(Scene.model_fields)
@@ -114,5 +115,5 @@ def _known(location):
     return list(MAPPINGS[location[-1]].model_fields)
 
 
-def _wrong_choice(node, choices):
+def _wrong_choice(node: Node, choices: tuple[str, ...]) -> Problem:
     return node.problem(f"must be {listed(choices, 'or')}", suggestion=closest(node.value, choices))

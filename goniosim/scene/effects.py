@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from goniosim.scene.layers import Interface
+from goniosim.scene.model import Scene
 from goniosim.scene.quantity import CHANNELS
 
 _COLOURS = ("red", "green", "blue")
@@ -24,7 +26,7 @@ class Effect:
     why: str
 
 
-def effects(scene):
+def effects(scene: Scene) -> list[Effect]:
     """List the effects that goniosim knows, and which of them a scene calls for.
 
     Parameters
@@ -80,7 +82,7 @@ def effects(scene):
     ]
 
 
-def distinct_channels(scene):
+def distinct_channels(scene: Scene) -> tuple[list[int], list[int]]:
     """Group the channels in which all parameters of the material agree.
 
     Parameters
@@ -98,7 +100,7 @@ def distinct_channels(scene):
     return [parameters.index(group) for group in groups], [groups.index(group) for group in parameters]
 
 
-def _per_channel(scene):
+def _per_channel(scene: Scene) -> list[tuple[float, ...]]:
     triples = list(scene.material.tau)
     for face in scene.material.interfaces:
         if face.type == "conductor":
@@ -108,7 +110,7 @@ def _per_channel(scene):
     return [tuple(triple[channel] for triple in triples) for channel in range(len(CHANNELS))]
 
 
-def _chromatic(scene):
+def _chromatic(scene: Scene) -> Effect:
     representatives, positions = distinct_channels(scene)
     count = len(representatives)
     if count == 1:
@@ -120,17 +122,17 @@ def _chromatic(scene):
     return Effect("chromatic", True, f"{first} and {second} agree everywhere: {count} distinct channels are traced")
 
 
-def _asked(name, places, absent):
+def _asked(name: str, places: list[str], absent: str) -> Effect:
     return Effect(name, bool(places), f"asked for by {', '.join(places)}" if places else absent)
 
 
-def _described(face):
+def _described(face: Interface) -> str:
     if face.type == "lambert":
         return f"lambert, rho {_number(face.rho)}"
     return f"{face.type}, alpha {_number(face.alpha)}"
 
 
-def _number(value):
+def _number(value: float | tuple[float, ...]) -> str:
     if isinstance(value, tuple):
         return "[" + ", ".join(_number(item) for item in value) + "]"
     return f"{value:g}"

@@ -1,10 +1,10 @@
 """What a stack is made of: interfaces and the media between them."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from goniosim.scene.quantity import Number, PerChannel, mistake, rgb
+from goniosim.scene.quantity import Number, PerChannel, Triple, mistake, rgb
 
 DielectricEta = Number(0.1, 10.0, "lie between 0.1 and 10: it is the absolute index below the interface")
 ConductorEta = Number(1e-3, 1e3, "lie between 0.001 and 1000: it is the real part of the absolute index")
@@ -41,21 +41,21 @@ class Conductor(Part):
     opaque: ClassVar[bool] = True
 
     type: Literal["conductor"]
-    eta: Annotated[float | tuple[float, float, float], PerChannel(ConductorEta)] = Field(
+    eta: Annotated[float | Triple, PerChannel(ConductorEta)] = Field(
         description="Real part of the absolute refractive index, one number or one for each channel."
     )
-    kappa: Annotated[float | tuple[float, float, float], PerChannel(Kappa)] = Field(
+    kappa: Annotated[float | Triple, PerChannel(Kappa)] = Field(
         description="Imaginary part of the absolute refractive index, one number or one for each channel."
     )
     alpha: Annotated[float, Alpha] = Field(default=0.0, description="GGX width; 0 is a smooth interface.")
 
     @property
-    def eta_rgb(self):
+    def eta_rgb(self) -> Triple:
         """Real part of the index per channel, tuple of 3 floats."""
         return rgb(self.eta)
 
     @property
-    def kappa_rgb(self):
+    def kappa_rgb(self) -> Triple:
         """Imaginary part of the index per channel, tuple of 3 floats."""
         return rgb(self.kappa)
 
@@ -66,12 +66,12 @@ class Lambert(Part):
     opaque: ClassVar[bool] = True
 
     type: Literal["lambert"]
-    rho: Annotated[float | tuple[float, float, float], PerChannel(Rho)] = Field(
+    rho: Annotated[float | Triple, PerChannel(Rho)] = Field(
         description="Diffuse albedo, one number or one for each channel."
     )
 
     @property
-    def rho_rgb(self):
+    def rho_rgb(self) -> Triple:
         """Albedo per channel, tuple of 3 floats."""
         return rgb(self.rho)
 
@@ -79,18 +79,23 @@ class Lambert(Part):
 class Medium(Part):
     """Absorbing medium between two interfaces."""
 
-    tau: Annotated[float | tuple[float, float, float], PerChannel(Tau)] = Field(
+    tau: Annotated[float | Triple, PerChannel(Tau)] = Field(
         description="Optical depth of one perpendicular crossing, one number or one for each channel."
     )
 
     @property
-    def tau_rgb(self):
+    def tau_rgb(self) -> Triple:
         """Optical depth per channel, tuple of 3 floats."""
         return rgb(self.tau)
 
 
-Interface = Annotated[Dielectric | Conductor | Lambert, Field(discriminator="type")]
-INTERFACES = {"dielectric": Dielectric, "conductor": Conductor, "lambert": Lambert}
+Kind = Dielectric | Conductor | Lambert
+Interface = Annotated[Kind, Field(discriminator="type")]
+INTERFACES: dict[str, type[Kind]] = {"dielectric": Dielectric, "conductor": Conductor, "lambert": Lambert}
+
+
+# Stands for an absent key, never for a null that was written: a default of any type.
+ABSENT: Any = None
 
 
 class Layer(Part):
@@ -98,13 +103,12 @@ class Layer(Part):
 
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["interface"]}, {"required": ["medium"]}]})
 
-    # None stands for an absent key, never for a null that was written.
-    interface: Interface = Field(default=None, description="A boundary where light is reflected and refracted.")
-    medium: Medium = Field(default=None, description="What fills the space between two interfaces.")
+    interface: Interface = Field(default=ABSENT, description="A boundary where light is reflected and refracted.")
+    medium: Medium = Field(default=ABSENT, description="What fills the space between two interfaces.")
 
     @model_validator(mode="before")
     @classmethod
-    def _labelled(cls, content):
+    def _labelled(cls, content: object) -> object:
         if isinstance(content, dict) and not {"interface", "medium"} & content.keys():
             if "type" in content:
                 raise mistake("must say that it is an interface: write `interface: {type: ...}`")
@@ -113,7 +117,7 @@ class Layer(Part):
         return content
 
     @model_validator(mode="after")
-    def _one_of_both(self):
+    def _one_of_both(self) -> Self:
         if (self.interface is None) == (self.medium is None):
             raise mistake("must hold either an interface or a medium: give each its own `- ` in the list")
         return self

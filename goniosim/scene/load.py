@@ -1,15 +1,20 @@
 """Scene files in, scenes out."""
 
+import os
+from collections.abc import Iterable
+from typing import Any
+
 from goniosim.errors import ConfigError
 from goniosim.scene.checking import check
+from goniosim.scene.model import Scene
 from goniosim.scene.overrides import override
 from goniosim.scene.problems import config_error
 from goniosim.scene.reading import read_file, read_text
 from goniosim.scene.study import study_scenes
-from goniosim.scene.tree import Origin, from_plain, locate
+from goniosim.scene.tree import Node, Origin, from_plain, locate
 
 
-def load_scene(path, overrides=()):
+def load_scene(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Scene:
     """Load a scene file that describes one material.
 
     Parameters
@@ -30,7 +35,7 @@ def load_scene(path, overrides=()):
     return _one_scene(override(read_file(path), overrides))
 
 
-def load_scenes(path, overrides=()):
+def load_scenes(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> list[Scene]:
     """Load a scene file or a study file.
 
     Parameters
@@ -53,7 +58,7 @@ def load_scenes(path, overrides=()):
     return study_scenes(root) if "study" in root.value else [_one_scene(root)]
 
 
-def parse_scene(content, source="<string>", overrides=()):
+def parse_scene(content: str | dict[str, Any], source: str = "<string>", overrides: Iterable[str] = ()) -> Scene:
     """Make a scene of YAML text or of a dict with the same content.
 
     Parameters
@@ -83,7 +88,7 @@ def parse_scene(content, source="<string>", overrides=()):
     return _one_scene(override(root, overrides))
 
 
-def is_study(path):
+def is_study(path: str | os.PathLike[str]) -> bool:
     """Tell whether a file describes a study of several materials.
 
     Parameters
@@ -102,7 +107,7 @@ def is_study(path):
     return "study" in read_file(path).value
 
 
-def study_name(path):
+def study_name(path: str | os.PathLike[str]) -> str | None:
     """Return the name of a study, after which its folder of results is called.
 
     Parameters
@@ -123,7 +128,7 @@ def study_name(path):
     return node.value if not rest and isinstance(node.value, str) else None
 
 
-def _one_scene(root):
+def _one_scene(root: Node) -> Scene:
     if "study" in root.value:
         raise config_error(
             [
@@ -135,6 +140,6 @@ def _one_scene(root):
             ]
         )
     scene, problems = check(root)
-    if problems:
+    if scene is None:
         raise config_error(problems)
     return scene

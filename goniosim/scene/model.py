@@ -4,12 +4,12 @@ import hashlib
 import io
 import json
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 from ruamel.yaml import YAML
 
-from goniosim.scene.layers import Layer, Part
+from goniosim.scene.layers import Interface, Layer, Part
 from goniosim.scene.quantity import Checked, Number, check_each, mistake, mistakes
 from goniosim.scene.structure import structure_mistakes
 
@@ -30,7 +30,7 @@ class FileName(Checked):
     pattern = r"[A-Za-z0-9_+=-][A-Za-z0-9._+=-]{0,119}"
     rule = "must be usable as a file name: 1 to 120 letters, digits or any of . _ + = - with no dot in front"
 
-    def check(self, value):
+    def check(self, value: object) -> str:
         """Return the name, or raise the mistake in it."""
         if not isinstance(value, str):
             raise mistake(f"{self.rule}; write it between quotes if it looks like a number")
@@ -38,7 +38,7 @@ class FileName(Checked):
             raise mistake(self.rule)
         return value
 
-    def json_schema(self):
+    def json_schema(self) -> dict[str, Any]:
         """JSON Schema of such a name."""
         return {"type": "string", "pattern": f"^{self.pattern}$"}
 
@@ -46,7 +46,7 @@ class FileName(Checked):
 class Angles(Checked):
     """Annotation for a pydantic field: the distinct angles of incidence."""
 
-    def check(self, value):
+    def check(self, value: object) -> tuple[float, ...]:
         """Return a tuple of angles in degrees, or raise the mistakes in it."""
         if not isinstance(value, (list, tuple)):
             raise mistake("must be a list of angles in degrees, such as [0, 30, 60]")
@@ -61,7 +61,7 @@ class Angles(Checked):
             raise mistakes([((index,), message, value[index]) for index in again])
         return angles
 
-    def json_schema(self):
+    def json_schema(self) -> dict[str, Any]:
         """JSON Schema of the list of angles."""
         return {
             "type": "array",
@@ -83,7 +83,7 @@ class Material(Part):
 
     @field_validator("layers", mode="after")
     @classmethod
-    def _ordered(cls, layers):
+    def _ordered(cls, layers: tuple[Layer, ...]) -> tuple[Layer, ...]:
         kinds = ["medium" if layer.interface is None else layer.interface.type for layer in layers]
         found = structure_mistakes(kinds)
         if found:
@@ -91,12 +91,12 @@ class Material(Part):
         return layers
 
     @property
-    def interfaces(self):
+    def interfaces(self) -> tuple[Interface, ...]:
         """The interfaces from top to bottom, tuple of K interface models."""
         return tuple(layer.interface for layer in self.layers if layer.interface is not None)
 
     @property
-    def tau(self):
+    def tau(self) -> tuple[tuple[float, ...], ...]:
         """Optical depth between each interface and the next, per channel.
 
         Returns
@@ -104,7 +104,7 @@ class Material(Part):
         tuple of K - 1 tuples of 3 floats
             Media in a row add up; zeros where two interfaces touch.
         """
-        gaps = []
+        gaps: list[tuple[float, ...]] = []
         for layer in self.layers:
             if layer.medium is None:
                 gaps.append((0.0, 0.0, 0.0))
@@ -113,7 +113,7 @@ class Material(Part):
         return tuple(gaps[:-1])
 
     @property
-    def transmits(self):
+    def transmits(self) -> bool:
         """Whether light can leave below: the last interface is a dielectric."""
         return not self.interfaces[-1].opaque
 
@@ -137,7 +137,7 @@ class Slice(Part):
     columns: Annotated[int, CellCount] = Field(default=360, description="Columns of cells over the azimuth.")
 
     @model_validator(mode="after")
-    def _bounded(self):
+    def _bounded(self) -> Self:
         if self.rows * self.columns > MAX_CELLS:
             raise mistake(
                 f"must have no more than 4e6 cells, and rows x columns is {self.rows * self.columns}: "
@@ -168,7 +168,7 @@ class Scene(Part):
     slice: Slice = Slice()
     simulation: Simulation = Simulation()
 
-    def to_yaml(self):
+    def to_yaml(self) -> str:
         """Write the scene as YAML, complete with its defaults.
 
         Returns
@@ -178,13 +178,13 @@ class Scene(Part):
         """
         yaml = YAML(typ="safe", pure=True)
         yaml.default_flow_style = None
-        yaml.sort_base_mapping_type_on_output = False
+        yaml.representer.sort_base_mapping_type_on_output = False
         yaml.width = 100
         stream = io.StringIO()
         yaml.dump(self.model_dump(mode="json", exclude_none=True), stream)
         return stream.getvalue()
 
-    def config_hash(self):
+    def config_hash(self) -> str:
         """Fingerprint of everything that determines the numbers of the result.
 
         The name of the material and the number of threads do not, and neither
@@ -207,6 +207,6 @@ class Scene(Part):
         return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _expanded(interface):
+def _expanded(interface: Interface) -> dict[str, Any]:
     rgb_of = {name: getattr(interface, f"{name}_rgb", None) for name in type(interface).model_fields}
     return {name: rgb_of[name] or value for name, value in interface.model_dump().items()}

@@ -1,14 +1,15 @@
 """Changes to a scene file from the command line: ``--set path=value``."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from goniosim.errors import ConfigError
 from goniosim.scene.problems import closest
 from goniosim.scene.reading import read_value
-from goniosim.scene.tree import Node, Origin, parse_path, show_path
+from goniosim.scene.tree import Node, Origin, Path, parse_path, show_path
 
 
-def override(root, assignments):
+def override(root: Node, assignments: Iterable[str]) -> Node:
     """Apply overrides to the raw content of a scene or study file.
 
     Parameters
@@ -27,7 +28,7 @@ def override(root, assignments):
     ConfigError
         Not of that form, or the path leads nowhere; names all that do.
     """
-    problems = []
+    problems: list[str] = []
     for assignment in assignments:
         source = f"--set {assignment}"
         path_text, equals, value_text = str(assignment).partition("=")
@@ -46,7 +47,7 @@ def override(root, assignments):
     return root
 
 
-def _set(node, done, rest, value):
+def _set(node: Node, done: Path, rest: Path, value: Node) -> Node:
     """Return a copy of the node at path `done`, in which the entry at path `rest` below it is `value`."""
     step, rest = rest[0], rest[1:]
     here = (*done, step)
@@ -70,6 +71,6 @@ def _set(node, done, rest, value):
     return node.with_child(step, _set(child, here, rest, value))
 
 
-def _nowhere(value, reason, meant=None):
+def _nowhere(value: Node, reason: str, meant: str | None = None) -> ConfigError:
     suggestion = f" (did you mean {meant}?)" if meant else ""
     return ConfigError(f"{value.origin.source}: leads nowhere: {reason}{suggestion}")

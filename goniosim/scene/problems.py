@@ -1,6 +1,7 @@
 """Mistakes in a scene file: one line each, with the place, the value and a suggestion."""
 
 import difflib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from goniosim.errors import ConfigError
@@ -35,9 +36,9 @@ class Problem:
     message: str
     got: str | None = None
     suggestion: str | None = None
-    variants: tuple = ()
+    variants: tuple[str, ...] = ()
 
-    def __str__(self):
+    def __str__(self) -> str:
         where = f"{self.source}:{self.line}" if self.line else self.source
         text = f"{where}: {self.field}: {self.message}" if self.field else f"{where}: {self.message}"
         if self.got is not None:
@@ -50,7 +51,7 @@ class Problem:
         return text
 
 
-def config_error(problems):
+def config_error(problems: Iterable[Problem]) -> ConfigError:
     """Gather mistakes into the error that reports them.
 
     Parameters
@@ -66,7 +67,7 @@ def config_error(problems):
     return ConfigError([str(problem) for problem in ordered])
 
 
-def closest(word, known):
+def closest(word: object, known: Iterable[str]) -> str | None:
     """Return the known word that was perhaps meant, or None.
 
     Parameters
@@ -82,6 +83,6 @@ def closest(word, known):
     return lower[match[0]] if match else None
 
 
-def listed(words, conjunction="and"):
+def listed(words: Sequence[str], conjunction: str = "and") -> str:
     """Join words as in a sentence: ``a, b and c``."""
     return f" {conjunction} ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

@@ -1,8 +1,11 @@
 """Numbers a user may write: each quantity is one range and one sentence that explains it."""
 
 import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from numbers import Integral, Real
+from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
@@ -10,8 +13,10 @@ from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 CHANNELS = ("R", "G", "B")
 EXACT_INTEGERS = 2**53
 
+Triple = tuple[float, float, float]
 
-def mistake(message):
+
+def mistake(message: str) -> PydanticCustomError:
     """One mistake of the user, for pydantic; braces in the message stay as they are.
 
     Parameters
@@ -26,7 +31,7 @@ def mistake(message):
     return PydanticCustomError("scene", "{message}", {"message": message})
 
 
-def mistakes(located):
+def mistakes(located: Iterable[tuple[tuple[int | str, ...], str, object]]) -> ValidationError:
     """Several mistakes at once, each at its own place below the value that is being validated.
 
     Parameters
@@ -44,13 +49,21 @@ def mistakes(located):
     return ValidationError.from_exception_data("scene", details)
 
 
-class Checked:
-    """Base of annotations for pydantic fields that have the methods `check` and `json_schema`."""
+class Checked(ABC):
+    """Base of annotations for pydantic fields that check a value by themselves."""
 
-    def __get_pydantic_core_schema__(self, source, handler):
+    @abstractmethod
+    def check(self, value: object) -> object:
+        """Return the value as it is kept, or raise the mistakes in it."""
+
+    @abstractmethod
+    def json_schema(self) -> dict[str, Any]:
+        """JSON Schema of such a value."""
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(self.check)
 
-    def __get_pydantic_json_schema__(self, schema, handler):
+    def __get_pydantic_json_schema__(self, schema: object, handler: object) -> dict[str, Any]:
         return self.json_schema()
 
 
@@ -79,33 +92,34 @@ class Number(Checked):
     open_high: bool = False
     zero_below: bool = False
 
-    def check(self, value):
+    def check(self, value: object) -> float:
         """Return the number as int or float, or raise the mistake in it."""
         if isinstance(value, str) and _looks_numeric(value):
             raise mistake("must be a number, and it is text here: write it without quotes")
         if isinstance(value, bool) or not isinstance(value, Real):
             raise mistake(f"must {self.rule}" if self.integer else f"must be a number, and {self.rule}")
-        if not isinstance(value, Integral) and not math.isfinite(value):
+        number = int(value) if isinstance(value, Integral) else float(value)
+        if isinstance(number, float) and not math.isfinite(number):
             raise mistake(f"must be finite, and {self.rule}")
-        above = value >= self.high if self.open_high else value > self.high
-        if above or (value < self.low and not (self.zero_below and value == 0)):
+        above = number >= self.high if self.open_high else number > self.high
+        if above or (number < self.low and not (self.zero_below and number == 0)):
             raise mistake(f"must {self.rule}")
         # Adding zero turns -0.0 into 0.0: one value, one hash.
-        return self._whole(value) if self.integer else float(value) + 0.0
+        return self._whole(number) if self.integer else float(number) + 0.0
 
-    def _whole(self, value):
-        if isinstance(value, Integral):
-            return int(value)
-        if value != math.floor(value):
+    def _whole(self, number: float) -> int:
+        if isinstance(number, int):
+            return number
+        if number != math.floor(number):
             raise mistake(f"must {self.rule}")
-        if value > EXACT_INTEGERS:
+        if number > EXACT_INTEGERS:
             raise mistake("must be written with all its digits: a number this large is not exact with an exponent")
-        return int(value)
+        return int(number)
 
-    def json_schema(self):
+    def json_schema(self) -> dict[str, Any]:
         """JSON Schema of one such number."""
         upper = "exclusiveMaximum" if self.open_high else "maximum"
-        ranged = {"minimum": self.low, upper: self.high}
+        ranged: dict[str, Any] = {"minimum": self.low, upper: self.high}
         if self.zero_below:
             ranged = {"anyOf": [{"const": 0}, ranged]}
         return {"type": "integer" if self.integer else "number", **ranged}
@@ -123,7 +137,7 @@ class PerChannel(Checked):
 
     number: Number
 
-    def check(self, value):
+    def check(self, value: object) -> float | tuple[float, ...]:
         """Return a float, or a tuple of three floats, or raise the mistakes in it."""
         if not isinstance(value, (list, tuple)):
             return self.number.check(value)
@@ -133,13 +147,13 @@ class PerChannel(Checked):
             )
         return check_each(self.number, value)
 
-    def json_schema(self):
+    def json_schema(self) -> dict[str, Any]:
         """JSON Schema of one number or a list of three."""
         one = self.number.json_schema()
         return {"anyOf": [one, {"type": "array", "items": one, "minItems": 3, "maxItems": 3}]}
 
 
-def check_each(number, values):
+def check_each(number: Number, values: Sequence[object]) -> tuple[float, ...]:
     """Check a list of numbers, all of them even when one is wrong.
 
     Parameters
@@ -156,7 +170,8 @@ def check_each(number, values):
     pydantic.ValidationError
         With one mistake for each wrong item, located at its index.
     """
-    found, located = [], []
+    found: list[float] = []
+    located: list[tuple[tuple[int | str, ...], str, object]] = []
     for index, item in enumerate(values):
         try:
             found.append(number.check(item))
@@ -167,7 +182,7 @@ def check_each(number, values):
     return tuple(found)
 
 
-def rgb(value):
+def rgb(value: float | Triple) -> Triple:
     """Expand a scalar that stands for all channels.
 
     Parameters
@@ -178,10 +193,10 @@ def rgb(value):
     -------
     tuple of 3 floats
     """
-    return value if isinstance(value, tuple) else (value,) * len(CHANNELS)
+    return value if isinstance(value, tuple) else (value, value, value)
 
 
-def _looks_numeric(text):
+def _looks_numeric(text: str) -> bool:
     try:
         float(text)
     except ValueError:

@@ -1,10 +1,13 @@
 """From a YAML file to the raw tree, with the line of every value."""
 
+import os
 from pathlib import Path
+from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, SequenceNode
+from ruamel.yaml.nodes import Node as YamlNode
 
 from goniosim.errors import ConfigError
 from goniosim.scene.problems import Problem, config_error
@@ -15,7 +18,7 @@ MAX_VALUES = 200_000
 SCALARS = {"null", "bool", "int", "float", "str"}
 
 
-def read_file(path):
+def read_file(path: str | os.PathLike[str]) -> Node:
     """Read a scene or study file.
 
     Parameters
@@ -53,7 +56,7 @@ def read_file(path):
     return read_text(text, source)
 
 
-def read_text(text, source):
+def read_text(text: str, source: str) -> Node:
     """Read the text of a scene or study file.
 
     Parameters
@@ -80,7 +83,7 @@ def read_text(text, source):
     return node
 
 
-def read_value(text, origin):
+def read_value(text: str, origin: Origin) -> Node | None:
     """Read any YAML value.
 
     Parameters
@@ -124,11 +127,11 @@ def read_value(text, origin):
     return node
 
 
-def _place(origin, line):
+def _place(origin: Origin, line: int) -> str:
     return f"{origin.source}:{origin.line + line}" if origin.line else origin.source
 
 
-def _reason(error, text, line):
+def _reason(error: MarkedYAMLError, text: str, line: int) -> str:
     parts = [part for part in (error.context, error.problem) if part]
     # The context leads up to the problem only where the latter goes on with "but".
     reason = ", ".join(parts) if parts[-1].startswith("but") else parts[-1]
@@ -142,13 +145,13 @@ def _reason(error, text, line):
 class _Reader:
     """Turns composed YAML nodes into a tree and notes what YAML alone cannot forbid."""
 
-    def __init__(self, yaml, with_lines):
-        self.problems = []
+    def __init__(self, yaml: YAML, with_lines: bool) -> None:
+        self.problems: list[Problem] = []
         self.values = 0
         self._construct = yaml.constructor
         self._with_lines = with_lines
 
-    def node(self, composed, origin):
+    def node(self, composed: YamlNode, origin: Origin) -> Node:
         # An alias repeats its anchor at every use, so the content may be far larger than the file,
         # or endless.
         self.values += 1
@@ -160,8 +163,8 @@ class _Reader:
             return Node([self._item(item, origin, i) for i, item in enumerate(composed.value)], origin)
         return Node(self._scalar(composed, origin), origin)
 
-    def _mapping(self, composed, origin):
-        content = {}
+    def _mapping(self, composed: MappingNode, origin: Origin) -> dict[str, Node]:
+        content: dict[str, Node] = {}
         for key_node, value_node in composed.value:
             key = key_node.value
             if not isinstance(key, str):
@@ -176,11 +179,11 @@ class _Reader:
             content[key] = self.node(value_node, below)
         return content
 
-    def _item(self, composed, origin, index):
+    def _item(self, composed: YamlNode, origin: Origin, index: int) -> Node:
         return self.node(composed, self._below(origin, index, composed))
 
-    def _scalar(self, composed, origin):
-        kind = composed.tag.rpartition(":")[2]
+    def _scalar(self, composed: YamlNode, origin: Origin) -> Any:
+        kind = (composed.tag or "").rpartition(":")[2]
         if kind not in SCALARS or kind == "str":
             return composed.value
         try:
@@ -189,9 +192,9 @@ class _Reader:
             self._note(origin, f"cannot be read as {kind}: check how it is written")
             return None
 
-    def _below(self, origin, step, composed):
+    def _below(self, origin: Origin, step: int | str, composed: YamlNode) -> Origin:
         line = composed.start_mark.line + 1 if self._with_lines else 0
         return Origin(origin.source, line, (*origin.path, step))
 
-    def _note(self, origin, message):
+    def _note(self, origin: Origin, message: str) -> None:
         self.problems.append(Problem(origin.source, origin.line, show_path(origin.path), message))

@@ -4,6 +4,7 @@ It is kept in ``configs/scene.schema.json``; `schema_text` is the content of tha
 """
 
 import json
+from typing import Any
 
 from goniosim.scene.model import FileName, Scene
 
@@ -17,7 +18,7 @@ AXIS_VALUE = {
 }
 
 
-def json_schema():
+def json_schema() -> dict[str, Any]:
     """Describe the format of scene and study files.
 
     The order of layers and the meaning of ``${...}`` go beyond what a schema
@@ -50,7 +51,7 @@ def json_schema():
     }
 
 
-def schema_text():
+def schema_text() -> str:
     """The schema as it stands in ``configs/scene.schema.json``.
 
     Returns
@@ -60,7 +61,7 @@ def schema_text():
     return json.dumps(json_schema(), indent=2) + "\n"
 
 
-def _study():
+def _study() -> dict[str, Any]:
     name = {
         **FileName().json_schema(),
         "description": "Name of the study and of the folder of its results.",
@@ -102,7 +103,7 @@ def _study():
     return {"if": {"required": ["materials"]}, "then": listed, "else": crossed}
 
 
-def _tidy(schema):
+def _tidy(schema: Any) -> Any:
     """Drop the titles that only repeat a key, and the nulls that stand for an absent key."""
     if isinstance(schema, list):
         return [_tidy(item) for item in schema]
@@ -117,7 +118,7 @@ def _tidy(schema):
     return kept
 
 
-def _templated(schema):
+def _templated(schema: dict[str, Any]) -> dict[str, Any]:
     """Allow ``${...}`` wherever a number, a name or a list of numbers may stand."""
     if "$ref" in schema:
         return {**schema, "$ref": schema["$ref"] + "Template"}
@@ -132,5 +133,5 @@ def _templated(schema):
         schema = {**schema, "items": _templated(schema["items"])}
         if "$ref" in schema["items"]:
             return schema
-    about = {key: schema[key] for key in ("description", "default") if key in schema}
+    about: dict[str, Any] = {key: schema[key] for key in ("description", "default") if key in schema}
     return {**about, "anyOf": [{key: value for key, value in schema.items() if key not in about}, REFERENCE]}

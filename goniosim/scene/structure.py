@@ -1,17 +1,21 @@
 """Which orders of layers make sense."""
 
-OPAQUE = ("conductor", "lambert")
+from collections.abc import Sequence
+
+from goniosim.scene.layers import INTERFACES
+
+OPAQUE = {name for name, interface in INTERFACES.items() if interface.opaque}
 
 
-def structure_mistakes(kinds):
+def structure_mistakes(kinds: Sequence[str | None]) -> list[tuple[tuple[int, ...], str]]:
     """Find what is wrong with the order of the layers.
 
     Parameters
     ----------
     kinds : list of str or None
-        From top to bottom ``medium``, ``dielectric``, ``conductor`` or
-        ``lambert``; None for a layer whose kind could not be made out, to
-        which the benefit of the doubt is given.
+        From top to bottom ``medium``, or the type of an interface; None for a
+        layer whose kind could not be made out, to which the benefit of the
+        doubt is given.
 
     Returns
     -------
@@ -21,7 +25,7 @@ def structure_mistakes(kinds):
     """
     if not kinds:
         return [((), "must hold at least one interface: a material without layers scatters no light")]
-    found = []
+    found: list[tuple[tuple[int, ...], str]] = []
     if kinds[0] == "medium":
         found.append(((0,), "must be an interface: the stack begins at its top interface, with air above"))
     base = next((index for index, kind in enumerate(kinds) if kind in OPAQUE), None)

@@ -2,13 +2,14 @@
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from pydantic_core import PydanticCustomError
 
 from goniosim.scene.checking import check
-from goniosim.scene.model import FileName
-from goniosim.scene.problems import closest, config_error, listed
+from goniosim.scene.model import FileName, Scene
+from goniosim.scene.problems import Problem, closest, config_error, listed
 from goniosim.scene.template import fill, reference_problems, variables
 from goniosim.scene.tree import Node
 
@@ -16,7 +17,7 @@ MAX_MATERIALS = 10_000
 SHARED = ("incident", "slice", "simulation")
 
 
-def study_scenes(root):
+def study_scenes(root: Node) -> list[Scene]:
     """Turn the raw content of a study file into its scenes.
 
     Parameters
@@ -37,7 +38,10 @@ def study_scenes(root):
     problems = _form_problems(root)
     if problems:
         raise config_error(problems)
-    scenes, names, mistaken, clashes = [], {}, {}, []
+    scenes: list[Scene] = []
+    clashes: list[Problem] = []
+    names: dict[str, tuple[int, str]] = {}
+    mistaken: dict[Problem, list[str]] = {}
     contents = _expand(root)
     for number, content in enumerate(contents):
         scene, problems = check(content)
@@ -47,7 +51,8 @@ def study_scenes(root):
         first = names.setdefault(name.casefold(), (number, name))
         if first != (number, name):
             clashes.append(_same_name(content, first[1], name))
-        scenes.append(scene)
+        if scene is not None:
+            scenes.append(scene)
     if mistaken or clashes:
         # A mistake that every material shows lies in what they share, so it names none of them.
         shared = {problem for problem, shown in mistaken.items() if len(shown) == len(contents)}
@@ -61,7 +66,7 @@ def study_scenes(root):
     return scenes
 
 
-def _expand(root):
+def _expand(root: Node) -> list[Node]:
     study = root.value["study"]
     shared = {key: root.value[key] for key in SHARED if key in root.value}
     if "materials" in study.value:
@@ -73,10 +78,10 @@ def _expand(root):
     return [Node({key: fill(node, each) for key, node in template.items()}, root.origin) for each in values]
 
 
-def _form_problems(root):
+def _form_problems(root: Node) -> list[Problem]:
     """Everything that can be wrong before a single material is looked at."""
     study = root.value["study"]
-    problems = []
+    problems: list[Problem] = []
     for key, node in root.value.items():
         if key == "material":
             message = "is out of place beside study: use study.material with cross, or study.materials"
@@ -101,11 +106,11 @@ def _form_problems(root):
     return problems + _list_problems(root, study.value["materials"])
 
 
-def _unknown(node, key, known):
+def _unknown(node: Node, key: str, known: Sequence[str]) -> Problem:
     return node.problem(f"unknown key; the keys here are {listed(known)}", False, closest(key, known))
 
 
-def _name_problems(node):
+def _name_problems(node: Node) -> list[Problem]:
     try:
         FileName().check(node.value)
     except PydanticCustomError as error:
@@ -113,14 +118,14 @@ def _name_problems(node):
     return []
 
 
-def _list_problems(root, materials):
+def _list_problems(root: Node, materials: Node) -> list[Problem]:
     if not isinstance(materials.value, list) or not materials.value:
         return [materials.problem("must be a list of materials, with at least one")]
     templates = [materials, *(root.value[key] for key in SHARED if key in root.value)]
     return [problem for node in templates for problem in reference_problems(node, ())]
 
 
-def _cross_problems(root, study):
+def _cross_problems(root: Node, study: Node) -> list[Problem]:
     cross = study.value["cross"]
     if not isinstance(cross.value, dict) or not cross.value:
         return [cross.problem("must be a mapping from the name of an axis to the list of its entries")]
@@ -136,7 +141,7 @@ def _cross_problems(root, study):
     return [problem for node in templates for problem in reference_problems(node, known)]
 
 
-def _axis_problems(axis):
+def _axis_problems(axis: Node) -> list[Problem]:
     if not isinstance(axis.value, list) or not axis.value:
         return [axis.problem("must be a list of entries, with at least one")]
     problems = []
@@ -150,22 +155,22 @@ def _axis_problems(axis):
     return problems
 
 
-def _keys(entry):
+def _keys(entry: Node) -> set[str] | None:
     return set(entry.value) if isinstance(entry.value, dict) else None
 
 
-def _is_leaf(node):
+def _is_leaf(node: Node) -> bool:
     if isinstance(node.value, list):
         return all(isinstance(item.value, (int, float, str)) for item in node.value)
     return isinstance(node.value, (int, float, str))
 
 
-def _name(content, number):
+def _name(content: Node, number: int) -> str:
     name = content.value["material"].child("name")
     return name.value if name is not None and isinstance(name.value, str) else f"number {number + 1}"
 
 
-def _same_name(content, first, name):
+def _same_name(content: Node, first: str, name: str) -> Problem:
     node = content.value["material"].value["name"]
     what = f"two materials are named {first}" if first == name else f"{first} and {name} differ only in case"
     return node.problem(f"{what}, and would share a file: give each material its own name", got=False)

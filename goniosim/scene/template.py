@@ -1,15 +1,17 @@
 """Templates of a study: text with ``${axis}`` or ``${axis.key}`` that stands for a value of an axis."""
 
 import re
+from collections.abc import Collection, Mapping
 from dataclasses import replace
+from typing import Any
 
-from goniosim.scene.problems import closest, listed
-from goniosim.scene.tree import from_plain, plain
+from goniosim.scene.problems import Problem, closest, listed
+from goniosim.scene.tree import Node, from_plain, plain
 
 REFERENCE = re.compile(r"\$\{([^{}]*)\}")
 
 
-def variables(entries):
+def variables(entries: Mapping[str, Node]) -> dict[str, Any]:
     """Name the values that one combination of axis entries offers.
 
     Parameters
@@ -22,7 +24,7 @@ def variables(entries):
     dict of str to object
         Plain values by ``axis`` or ``axis.key``.
     """
-    named = {}
+    named: dict[str, Any] = {}
     for axis, entry in entries.items():
         if isinstance(entry.value, dict):
             named.update({f"{axis}.{key}": plain(child) for key, child in entry.value.items()})
@@ -31,7 +33,7 @@ def variables(entries):
     return named
 
 
-def reference_problems(node, known):
+def reference_problems(node: Node, known: Collection[str]) -> list[Problem]:
     """Find references that mean nothing.
 
     Parameters
@@ -62,7 +64,7 @@ def reference_problems(node, known):
     return found
 
 
-def fill(node, values):
+def fill(node: Node, values: Mapping[str, Any]) -> Node:
     """Replace the references below a node.
 
     Parameters
@@ -89,7 +91,7 @@ def fill(node, values):
     return replace(node, value=REFERENCE.sub(lambda match: _text(values[match[1].strip()]), node.value))
 
 
-def _text(value):
+def _text(value: object) -> str:
     if isinstance(value, list):
         return "_".join(_text(item) for item in value)
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -2,10 +2,13 @@
 
 import re
 from dataclasses import dataclass, replace
+from typing import Any
 
 from goniosim.scene.problems import Problem
 
 MAX_DEPTH = 50
+
+Path = tuple[int | str, ...]
 
 
 @dataclass(frozen=True)
@@ -24,7 +27,7 @@ class Origin:
 
     source: str
     line: int
-    path: tuple = ()
+    path: Path = ()
 
 
 @dataclass(frozen=True)
@@ -37,23 +40,23 @@ class Node:
     origin : Origin
     """
 
-    value: object
+    value: Any
     origin: Origin
 
-    def child(self, step):
+    def child(self, step: int | str) -> "Node | None":
         """Return the Node at a key or an index, or None where there is none."""
         if isinstance(step, str):
             return self.value.get(step) if isinstance(self.value, dict) else None
         inside = isinstance(self.value, list) and 0 <= step < len(self.value)
         return self.value[step] if inside else None
 
-    def with_child(self, step, child):
+    def with_child(self, step: int | str, child: "Node") -> "Node":
         """Return a copy in which the entry at a key or an index is `child`."""
         if isinstance(step, str):
             return replace(self, value={**self.value, step: child})
         return replace(self, value=[*self.value[:step], child, *self.value[step + 1 :]])
 
-    def problem(self, message, got=True, suggestion=None, below=()):
+    def problem(self, message: str, got: bool = True, suggestion: str | None = None, below: Path = ()) -> Problem:
         """Describe a mistake in this value.
 
         Parameters
@@ -75,7 +78,7 @@ class Node:
         return Problem(self.origin.source, self.origin.line, path, message, shown, suggestion)
 
 
-def plain(node):
+def plain(node: Node) -> Any:
     """Return the value without positions, as dicts, lists and scalars."""
     if isinstance(node.value, dict):
         return {key: plain(child) for key, child in node.value.items()}
@@ -84,7 +87,7 @@ def plain(node):
     return node.value
 
 
-def from_plain(value, origin):
+def from_plain(value: object, origin: Origin) -> Node:
     """Wrap dicts, lists and scalars that come without positions.
 
     Parameters
@@ -105,15 +108,13 @@ def from_plain(value, origin):
     if len(origin.path) > MAX_DEPTH:
         raise RecursionError
     if isinstance(value, dict):
-        content = {str(key): from_plain(item, _below(origin, str(key))) for key, item in value.items()}
-    elif isinstance(value, (list, tuple)):
-        content = [from_plain(item, _below(origin, index)) for index, item in enumerate(value)]
-    else:
-        content = value
-    return Node(content, origin)
+        return Node({str(key): from_plain(item, _below(origin, str(key))) for key, item in value.items()}, origin)
+    if isinstance(value, (list, tuple)):
+        return Node([from_plain(item, _below(origin, index)) for index, item in enumerate(value)], origin)
+    return Node(value, origin)
 
 
-def locate(node, path):
+def locate(node: Node, path: Path) -> tuple[Node, Path]:
     """Follow a path as far as it goes.
 
     Parameters
@@ -134,13 +135,13 @@ def locate(node, path):
     return node, ()
 
 
-def show_path(path):
+def show_path(path: Path) -> str:
     """Write a path as a user would: ``material.layers[2].interface``."""
     text = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
     return text.lstrip(".")
 
 
-def parse_path(text):
+def parse_path(text: str) -> Path | None:
     """Read a path such as ``material.layers[2].interface``.
 
     Returns
@@ -154,7 +155,7 @@ def parse_path(text):
     return tuple(key if key else int(index) for key, index in steps)
 
 
-def show(value, width=60):
+def show(value: object, width: int = 60) -> str:
     """Write a value as it stands in a file, on one short line."""
     if isinstance(value, dict):
         return "a mapping"
@@ -171,5 +172,5 @@ def show(value, width=60):
     return text if len(text) <= width else text[: width - 3] + "..."
 
 
-def _below(origin, step):
+def _below(origin: Origin, step: int | str) -> Origin:
     return replace(origin, path=(*origin.path, step))

@@ -61,7 +61,7 @@ class Dataset:
     meaning: str
 
     @property
-    def is_scale(self):
+    def is_scale(self) -> bool:
         """Whether this dataset is the scale of a dimension."""
         return self.path in SCALES.values()
 
@@ -146,7 +146,7 @@ _PLACEHOLDERS = {
 }
 
 
-def _pattern(path):
+def _pattern(path: str) -> re.Pattern[str]:
     for placeholder, expression in _PLACEHOLDERS.items():
         path = path.replace(placeholder, f"(?:{expression})")
     return re.compile(path)
@@ -155,7 +155,7 @@ def _pattern(path):
 _PATTERNS = [(_pattern(dataset.path), dataset) for dataset in DATASETS]
 
 
-def describe(path):
+def describe(path: str) -> Dataset:
     """Find the row of the table that describes a dataset.
 
     Parameters

@@ -2,6 +2,8 @@
 
 import contextlib
 import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, BinaryIO
 
 import h5py
 import numpy as np
@@ -10,11 +12,12 @@ from goniosim.errors import DamagedFileError
 from goniosim.result import AUDIT_ENTRIES, Audit, Cells, Component, Cost, Result
 from goniosim.store import userblock
 from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, SCALES, describe
+from goniosim.store.userblock import StrPath
 
 _ORDER = re.compile(r"order_(\d+)(?:_and_more)?")
 
 
-def open_result(path):
+def open_result(path: StrPath) -> Result:
     """Read a result file and check every byte of it.
 
     Parameters
@@ -41,7 +44,7 @@ def open_result(path):
             return _result(file)
 
 
-def read_header(path):
+def read_header(path: StrPath) -> dict[str, str | int]:
     """Read the root attributes of a result file, without its data.
 
     The attributes are checked against their digest and the file against its
@@ -71,7 +74,7 @@ def read_header(path):
 
 
 @contextlib.contextmanager
-def _hdf5(stream, path):
+def _hdf5(stream: BinaryIO, path: StrPath) -> Iterator[h5py.File]:
     """The HDF5 part of an open file; whatever HDF5 or h5py trips over is damage.
 
     Reading through the stream that was verified leaves no moment in which
@@ -86,20 +89,20 @@ def _hdf5(stream, path):
         raise DamagedFileError(f"{path}: cannot be decoded: {reason}; {userblock.REMEDY}") from error
 
 
-def _attributes(file):
+def _attributes(file: h5py.File) -> dict[str, Any]:
     return {name: _plain(value) for name, value in file.attrs.items()}
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     if isinstance(value, bytes):
         return value.decode()
     return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
 
 
-def _result(file):
+def _result(file: h5py.File) -> Result:
     sizes = {dim: len(_dataset(file, scale)) for dim, scale in SCALES.items()}
 
-    def read(path):
+    def read(path: str) -> Any:
         return _read(file, path, sizes)
 
     attributes = _attributes(file)
@@ -136,7 +139,7 @@ def _result(file):
     )
 
 
-def _component(file, path, read):
+def _component(file: h5py.File, path: str, read: Callable[[str], Any]) -> Component:
     orders = sorted((int(match[1]), match[0]) for match in map(_ORDER.fullmatch, file[path]) if match)
     return Component(
         energy=read(f"{path}/energy"),
@@ -149,7 +152,7 @@ def _component(file, path, read):
     )
 
 
-def _cost(file, read):
+def _cost(file: h5py.File, read: Callable[[str], Any]) -> Cost:
     errors = {component: f"cost/error_{component.replace('/', '_')}" for component in COMPONENTS}
     return Cost(
         rays=read("cost/rays"),
@@ -159,7 +162,7 @@ def _cost(file, read):
     )
 
 
-def _read(file, path, sizes):
+def _read(file: h5py.File, path: str, sizes: Mapping[str, int]) -> Any:
     entry = describe(path)
     values = _dataset(file, path)[()]
     if values.shape != tuple(sizes[dim] for dim in entry.dims):
@@ -169,7 +172,7 @@ def _read(file, path, sizes):
     return values.astype(entry.dtype, copy=False)
 
 
-def _dataset(file, path):
+def _dataset(file: h5py.File, path: str) -> h5py.Dataset:
     if path not in file:
         raise ValueError(f"the dataset {path} is missing")
     return file[path]

@@ -10,7 +10,15 @@ _BYTES_PER_GROUP = 6_000
 _BYTES_OF_THE_REST = 32_000
 
 
-def predicted_size(directions, channels, rows, columns, n_components, n_orders=0, parametrization="half"):
+def predicted_size(
+    directions: int,
+    channels: int,
+    rows: int,
+    columns: int,
+    n_components: int,
+    n_orders: int = 0,
+    parametrization: str = "half",
+) -> int:
     """Upper estimate of the size of a result file.
 
     Within 25 % of the size if nearly every cell is hit; narrow lobes leave

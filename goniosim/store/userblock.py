@@ -8,15 +8,21 @@ form in every version of the schema.
 """
 
 import hashlib
+import io
 import json
+import os
 import re
 import stat
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
-from goniosim.errors import DamagedFileError, ForeignFileError, NewerSchemaError
+from goniosim.errors import DamagedFileError, ForeignFileError, GoniosimError, NewerSchemaError
 from goniosim.store.layout import SCHEMA_VERSION
+
+StrPath = str | os.PathLike[str]
 
 SIZE = 512
 MAGIC = b"goniosim result, schema "
@@ -37,7 +43,7 @@ class UserBlock:
     attributes_digest: str
 
 
-def attributes_digest(attributes):
+def attributes_digest(attributes: Mapping[str, str | int]) -> str:
     """Digest of the root attributes, so that they can be trusted without reading the whole file.
 
     Parameters
@@ -52,7 +58,7 @@ def attributes_digest(attributes):
     return hashlib.sha256(json.dumps(attributes, sort_keys=True).encode()).hexdigest()
 
 
-def make(image, attributes):
+def make(image: bytes, attributes: Mapping[str, str | int]) -> bytes:
     """User block for an HDF5 image.
 
     Parameters
@@ -78,11 +84,11 @@ def make(image, attributes):
     return body + _checksum(body)
 
 
-def _checksum(body):
+def _checksum(body: bytes) -> bytes:
     return b"%08x\n" % zlib.crc32(body)
 
 
-def open_regular(path):
+def open_regular(path: StrPath) -> io.BufferedReader:
     """Open a file for reading, or explain why it cannot be a result.
 
     Parameters
@@ -113,7 +119,7 @@ def open_regular(path):
         raise ForeignFileError(message) from error
 
 
-def is_result(path):
+def is_result(path: StrPath) -> bool:
     """Whether an existing file starts like a result, sound or not; False if it cannot be read."""
     try:
         with open_regular(path) as stream:
@@ -122,7 +128,7 @@ def is_result(path):
         return False
 
 
-def read(stream, path):
+def read(stream: BinaryIO, path: StrPath) -> UserBlock:
     """Read the user block and hold the length of the file against it.
 
     Parameters
@@ -171,7 +177,7 @@ def read(stream, path):
     return UserBlock(b".".join(version.groups()).decode(), expected, fields[2].decode(), fields[3].decode())
 
 
-def _no_magic(block, path):
+def _no_magic(block: bytes, path: StrPath) -> GoniosimError:
     if not block:
         return ForeignFileError(f"{path}: is empty; simulate again to make a result")
     if MAGIC.startswith(block):
@@ -180,7 +186,7 @@ def _no_magic(block, path):
     return ForeignFileError(f"{path}: is {kind}not a goniosim result; name a file that `goniosim simulate` wrote")
 
 
-def verify(stream, block, path):
+def verify(stream: io.BufferedReader, block: UserBlock, path: StrPath) -> None:
     """Hold every byte after the user block against its digest.
 
     Parameters

@@ -1,20 +1,24 @@
 """From a result in memory to the bytes of a file, and onto the disk."""
 
 import uuid
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import h5py
 import numpy as np
 
 from goniosim.errors import OutputError
+from goniosim.result import Component, Result
 from goniosim.store import userblock
-from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCALES, SCHEMA_VERSION, describe
-from goniosim.store.output import rescue, reserve_output
+from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCALES, SCHEMA_VERSION, Dataset, describe
+from goniosim.store.output import Reservation, rescue, reserve_output
+from goniosim.store.userblock import StrPath
 
 # Any HDF5 since 1.10 (2016) can read this format, and the bytes do not depend on the installed one.
 _FORMAT = ("v110", "v110")
 
 
-def write_result(result, path, *, reservation=None):
+def write_result(result: Result, path: StrPath, *, reservation: Reservation | None = None) -> None:
     """Write a result file, whole or not at all.
 
     Parameters
@@ -45,7 +49,7 @@ def write_result(result, path, *, reservation=None):
         raise OutputError(f"{error}; {rescue(parts, path)}") from error
 
 
-def encode(result):
+def encode(result: Result) -> tuple[bytes, bytes]:
     """Bytes of a result file.
 
     Equal results give equal bytes: no clock and no random number goes in.
@@ -87,7 +91,7 @@ def encode(result):
         for name, called_for in result.effects.items():
             effects.attrs[name] = np.int8(called_for)
         for name, value in attributes.items():
-            if name == "seed":
+            if isinstance(value, int):
                 file.attrs[name] = np.uint64(value)
             else:
                 _write_text(file, name, value)
@@ -96,7 +100,7 @@ def encode(result):
     return userblock.make(image, attributes), image
 
 
-def _root_attributes(result):
+def _root_attributes(result: Result) -> dict[str, str | int]:
     if result.status not in ("complete", "partial"):
         raise ValueError(f"status is {result.status!r}, not 'complete' or 'partial'")
     missing = {"created_utc", "goniosim_version"} - result.provenance.keys()
@@ -116,12 +120,12 @@ def _root_attributes(result):
     return {"seed": int(result.seed), **{name: _utf8(text).decode() for name, text in texts.items()}}
 
 
-def _utf8(text):
+def _utf8(text: str) -> bytes:
     # A path or an argument from the shell may hold bytes that are not text: finished work is worth more.
     return text.encode("utf-8", "backslashreplace").rstrip(b"\0")
 
 
-def _components(components, parent=""):
+def _components(components: Mapping[str, Component], parent: str = "") -> Iterator[tuple[str, Component]]:
     """Paths and components, orders after the component that they decompose."""
     for name, component in components.items():
         if not parent and name not in COMPONENTS:
@@ -130,7 +134,7 @@ def _components(components, parent=""):
         yield from _components(component.orders, f"{parent}{name}/")
 
 
-def _arrays(result):
+def _arrays(result: Result) -> Iterator[tuple[str, Any]]:
     """Path and values of every dataset of the file."""
     cells = result.cells
     yield "direction", np.arange(len(result.theta_deg))
@@ -155,11 +159,11 @@ def _arrays(result):
     yield "audit/direct_integrated_stderr", result.audit.direct_integrated_stderr
     for name in ("rays", "seconds", "cpu_seconds"):
         yield f"cost/{name}", getattr(result.cost, name)
-    for component, error in result.cost.error.items():
-        yield f"cost/error_{component.replace('/', '_')}", error
+    for sampled, error in result.cost.error.items():
+        yield f"cost/error_{sampled.replace('/', '_')}", error
 
 
-def _write_dataset(file, path, values, sizes):
+def _write_dataset(file: h5py.File, path: str, values: Any, sizes: Mapping[str, int]) -> None:
     entry = describe(path)
     values = _stored(path, values, entry.dtype)
     if values.shape != tuple(sizes[dim] for dim in entry.dims):
@@ -187,7 +191,7 @@ def _write_dataset(file, path, values, sizes):
         _link_coordinates(file, dataset, entry)
 
 
-def _link_coordinates(file, dataset, entry):
+def _link_coordinates(file: h5py.File, dataset: h5py.Dataset, entry: Dataset) -> None:
     """Hard links to the coordinates of a dataset beside it, where xarray looks for them."""
     coordinates = {dim: SCALES[dim] for dim in entry.dims}
     if "direction" in entry.dims and dataset.parent.name != "/incident":
@@ -198,7 +202,7 @@ def _link_coordinates(file, dataset, entry):
             dataset.parent[name] = file[target]
 
 
-def _stored(path, values, dtype):
+def _stored(path: str, values: Any, dtype: str) -> np.ndarray:
     """Values in the type that the file holds."""
     if dtype == "text":
         raw = [_utf8(text) for text in values]
@@ -211,7 +215,7 @@ def _stored(path, values, dtype):
     return values
 
 
-def _write_text(node, name, text):
+def _write_text(node: h5py.Group | h5py.Dataset, name: str, text: str) -> None:
     # Fixed length, because HDF5 keeps texts of variable length in a heap without a checksum.
     raw = _utf8(text)
     node.attrs.create(name, raw, dtype=h5py.string_dtype("utf-8", max(1, len(raw))))

@@ -69,6 +69,16 @@ def test_models_apply_or_say_why_not(name, component, base):
             evaluate_model(name, scene, 30, 40, 170, component)
 
 
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("base", BASES)
+def test_what_a_model_applies_to_hangs_together(name, base):
+    """A comparison asks for a main component and for all reflection, which it takes apart or leaves whole."""
+    scene = make_scene(BASES[base], 30)
+    applies = {component: MODELS[name].supports(scene, component) is None for component in COMPONENTS}
+    assert applies["reflection/direct"] == applies["reflection/internal"]
+    assert applies["reflection"] >= max(applies.values())
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -82,6 +92,7 @@ def test_models_apply_or_say_why_not(name, component, base):
         (("ww09", 30, 40, 0, "reflection", {"masking": "seperable"}), "masking.*did you mean separable"),
         (("ww09", 30, 40, 0, "reflection", {"jacobian": "snell"}), "no option 'jacobian'"),
         (("ww09", 30, 40, 0, "reflection", "masking"), "options must be a mapping"),
+        (("ww09", 30, 40, 0, "reflection", MODELS["ww09"].options), "options must be a mapping"),
     ],
 )
 def test_wrong_arguments_are_explained(arguments, message):

@@ -1,5 +1,7 @@
 """How models look in all figures: the colours of Bati et al. 2019, and a pattern for a second reading."""
 
+from ...models import MODELS
+
 COLOURS = {
     "ww09": "#d1242f",
     "elek10": "#f08c00",
@@ -16,17 +18,20 @@ MARKERS = {
     "belcour18_symmetric": "v",
     "bati19_belcour": "P",
 }
+# For models without a look of their own, in the order in which they are listed.
+SPARE_COLOURS = ("#8c564b", "#5f6b76", "#c2459b", "#8a8a00", "#00796b", "#b35c00")
+SPARE_MARKERS = ("X", "p", "h", "*", "<", ">")
 DASHED = (0, (2.2, 1.2))
 
 
 def colour(variant):
     """Colour of a model, whatever its options."""
-    return COLOURS[variant.model]
+    return COLOURS.get(variant.model) or _spare(SPARE_COLOURS, variant.model)
 
 
 def marker(variant):
     """Marker of a model, whatever its options."""
-    return MARKERS[variant.model]
+    return MARKERS.get(variant.model) or _spare(SPARE_MARKERS, variant.model)
 
 
 def line_style(variant):
@@ -36,6 +41,11 @@ def line_style(variant):
 
 def spread_out(variants):
     """All variants that occur, without repetition, in the order in which models are listed."""
-    order = list(COLOURS)
+    order = list(MODELS)
     found = dict.fromkeys(variants)
     return sorted(found, key=lambda variant: (order.index(variant.model), variant.options_text))
+
+
+def _spare(looks, model):
+    others = [name for name in MODELS if name not in COLOURS]
+    return looks[others.index(model) % len(looks)]
