@@ -7,7 +7,7 @@ import numpy as np
 
 from ..models import MODELS, prepare
 from ..result import Component
-from ..scene import parse_scene
+from ..scene import optical_stack, parse_scene
 from .grid import make_grid
 from .integrate import integrate, to_slice
 from .measures import Measures, measure, rmse
@@ -18,7 +18,7 @@ from .variants import Variant, components_for, variants_for
 CONVERGED = 0.02
 # How many times finer the sub-cells are with which the sub-cells asked for are compared.
 FINER = 3
-# Width of a Gaussian-like lobe that stands for a smooth interface in some models.
+# Width to look for beside a smooth interface: a lobe refracted by a rough one may be far narrower than it.
 SMOOTH = 1e-4
 
 
@@ -180,7 +180,7 @@ def _parts(scene, model, component):
 
 def _integrated(scene, variant, component, grids, subcells, pool):
     """Integrate a variant in all directions."""
-    faces = scene.material.interfaces
+    faces = optical_stack(scene.material).material.interfaces
     narrowest = min((face.alpha or SMOOTH for face in faces if face.type != "lambert"), default=1.0)
     options = dict(variant.options)
     levels = {"energy": [], "finer": [], "converged": []}

@@ -11,7 +11,7 @@ from ..options import masking_option, option
 from ..stack import ggx_lobe, light_direction, make_stack
 from .sweep import sweep
 
-# Width to which a lobe is widened so that it has a value per steradian.
+# Width to which a lobe that rough interfaces made is widened, for the kernels.
 NARROWEST = 1e-4
 
 
@@ -90,7 +90,7 @@ def statistics(scene, cosine, options):
     energy : ndarray, shape (K, 3)
         Of the lobe of each interface.
     alpha : ndarray, shape (K,)
-        GGX width of each lobe.
+        GGX width of each lobe; 0 for a Dirac lobe, made by smooth interfaces alone.
     reflection, transmission : ndarray, shape (4,)
         Energies per channel and GGX width of all that is reflected, and of all that is transmitted.
     """
@@ -107,14 +107,15 @@ def lobes_of(component):
 
 
 def prepare_lobes(scene, options, light, energy, alpha):
-    """A sum of GGX lobes about the mirror image of ``light``; energies [lobe, 3], widths [lobe]."""
+    """A sum of lobes about the mirror image of ``light``: GGX lobes, and Dirac lobes where the width is 0.
+
+    Energies [lobe, 3], widths [lobe].
+    """
     distinct, position = distinct_channels(scene)
-    tables = (
-        np.ascontiguousarray(np.asarray(energy)[:, distinct]),
-        np.maximum(alpha, NARROWEST),
-        options.masking == "correlated",
-    )
-    return Prepared(evaluate, tables, light, np.zeros(len(distinct)), position)
+    energy = energy[:, distinct]
+    dirac = alpha == 0.0
+    tables = (energy[~dirac], np.maximum(alpha[~dirac], NARROWEST), options.masking == "correlated")
+    return Prepared(evaluate, tables, light, energy[dirac].sum(axis=0), position)
 
 
 def prepare_forward(scene, theta_i_deg, component, options):
