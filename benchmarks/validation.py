@@ -14,7 +14,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 from goniosim.engine import simulate  # noqa: E402
-from reference import checks, closed_forms  # noqa: E402
+from goniosim.optics import fresnel  # noqa: E402
+from reference import checks, closed_forms, exact_fresnel  # noqa: E402
 from reference.cell_integrals import integrate_cells  # noqa: E402
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium  # noqa: E402
 
@@ -28,6 +29,40 @@ def table(title, head, rows):
     print(f"\n### {title}\n\n| {' | '.join(head)} |\n|{'---|' * len(head)}")
     for row in rows:
         print(f"| {' | '.join(str(cell) for cell in row)} |", flush=True)
+
+
+def fresnel_rows():
+    """Largest errors against decimal arithmetic, of goniosim and of the textbook formula in doubles."""
+    near_one = [1.0 + sign * 10.0**-e for e in range(1, 13) for sign in (1.0, -1.0)]
+    thetas = np.append(np.arange(90.0), 90.0 - 10.0 ** -np.arange(1.0, 7.0))
+    cosines = np.cos(np.radians(thetas)).tolist()
+
+    def worst(rows, relative):
+        errors = [[abs(float((v - float(exact)) / (float(exact) if relative else 1.0))) for v in values]
+                  for exact, *values in rows]  # fmt: skip
+        return [f"{error:.0e}" for error in np.max(errors, axis=0)]
+
+    etas = [*near_one, 0.1, 0.2, 0.5, 1.0 / 1.5, 1.33, 1.5, 4.0, 10.0]
+    reflected, through = [], []
+    for eta in etas:
+        for c in cosines:
+            exact, rest, _ = exact_fresnel.dielectric(c, eta)
+            textbook = float(closed_forms.fresnel_dielectric(c, eta))
+            reflected.append((exact, fresnel.fresnel_dielectric(c, eta)[0], textbook))
+            if rest > 0:
+                through.append((rest, fresnel.dielectric_transmittance(c, eta), 1.0 - textbook))
+    yield "dielectric R", "0.1 to 10, 1 ± 1e-12", "absolute", *worst(reflected, False)
+    yield "dielectric 1 - R", "0.1 to 10, 1 ± 1e-12", "relative", *worst(through, True)
+    reflected, absorbed = [], []
+    for eta in (*near_one, 0.05, 1.45, 3.0):
+        for kappa in 10.0 ** np.arange(-9.0, 7.0):
+            for c in np.logspace(-6.0, 0.0, 13):
+                exact, rest = exact_fresnel.conductor(c, eta, kappa)
+                textbook = float(closed_forms.fresnel_conductor(c, complex(eta, kappa)))
+                reflected.append((exact, fresnel.fresnel_conductor(c, eta, kappa), textbook))
+                absorbed.append((rest, fresnel.conductor_absorptance(c, eta, kappa), 1.0 - textbook))
+    yield "conductor R", "eta 0.05 to 3, 1 ± 1e-12; kappa 1e-9 to 1e6", "relative", *worst(reflected, True)
+    yield "conductor 1 - R", "eta 0.05 to 3, 1 ± 1e-12; kappa 1e-9 to 1e6", "relative", *worst(absorbed, True)
 
 
 def closed_form_rows(rays, seeds):
@@ -187,6 +222,11 @@ def main():
     def rays(count):
         return int(scale * count)
 
+    table(
+        "Fresnel's equations where they lose digits",
+        ("quantity", "indices", "largest error", "goniosim", "textbook formula in doubles"),
+        fresnel_rows(),
+    )
     table(
         "Closed forms of smooth stacks",
         ("stack", "theta", "energy", "exact", f"found, 30 seeds of {rays(1e6):.0e} rays", "sigma"),

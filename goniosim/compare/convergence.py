@@ -42,7 +42,7 @@ class Levels:
     integration: str
 
 
-def converge(prepared, grid, n, pool, coarse, spread, narrowest):
+def converge(prepared, grid, n, pool, coarse, spread):
     """Integrate a model again where n x n sub-cells may be too coarse.
 
     Parameters
@@ -54,14 +54,12 @@ def converge(prepared, grid, n, pool, coarse, spread, narrowest):
     pool : goniosim.integration.Pool
     coarse, spread : ndarray
         From `goniosim.integration.integrate_fixed`.
-    narrowest : float
-        GGX width of the narrowest lobe of the model.
 
     Returns
     -------
     Levels
     """
-    lobe = find_lobe(grid, prepared.light, narrowest)
+    lobe = find_lobe(grid, prepared.light, prepared.narrowest)
     suspects = _suspects(prepared, grid, spread, lobe)
     finer, converged = coarse.copy(), coarse.copy()
     if not len(suspects):

@@ -18,8 +18,6 @@ from .variants import Variant, components_for, variants_for
 CONVERGED = 0.02
 # What a converged integration took, the least first.
 INTEGRATIONS = ("fixed", "adaptive", "exhausted")
-# Width of a Gaussian-like lobe that stands for a smooth interface in some models.
-SMOOTH = 1e-4
 
 
 @dataclass(frozen=True)
@@ -185,8 +183,6 @@ def _parts(scene, model, component):
 
 def _integrated(scene, variant, component, grids, subcells, pool):
     """Integrate a variant in all directions."""
-    faces = scene.material.interfaces
-    narrowest = min((face.alpha or SMOOTH for face in faces if face.type != "lambert"), default=1.0)
     options = dict(variant.options)
     levels = {"energy": [], "finer": [], "converged": []}
     integration = []
@@ -200,7 +196,7 @@ def _integrated(scene, variant, component, grids, subcells, pool):
         coarse, spread = integrate_fixed(prepared, grid, subcells, pool)
         seconds += time.perf_counter() - started
         contains_delta |= bool(np.any(prepared.mirror_energy))
-        found = converge(prepared, grid, subcells, pool, coarse, spread, narrowest)
+        found = converge(prepared, grid, subcells, pool, coarse, spread)
         for kept, energy in zip(levels.values(), (found.coarse, found.finer, found.converged), strict=True):
             kept.append(to_slice(prepared, grid, energy))
         integration.append(found.integration)

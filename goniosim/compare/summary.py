@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..scene import optical_stack
 from .rows import material_rows
 
 PLASTICS, METALS, SLABS = CATEGORIES = ("plastics", "metals", "slabs")
@@ -69,7 +70,8 @@ def summarise(comparison):
     -------
     Summary
     """
-    result, interfaces = comparison.result, comparison.scene.material.interfaces
+    result = comparison.result
+    interfaces = optical_stack(comparison.scene.material).material.interfaces
     main = comparison.components[0]
     base = {"lambert": PLASTICS, "conductor": METALS, "dielectric": SLABS}[interfaces[-1].type]
     noise = result.cost.error.get(main, np.zeros(0))

@@ -5,6 +5,7 @@ import dataclasses
 from ..errors import ConfigError
 from ..models import MODELS, describe_options, find_model
 from ..models.options import parse_options
+from ..scene import optical_stack
 
 
 @dataclasses.dataclass(frozen=True)
@@ -111,7 +112,7 @@ def components_for(scene):
     """
     if scene.material.transmits:
         return ("transmission", "reflection")
-    if len(scene.material.interfaces) == 1:
+    if len(optical_stack(scene.material).material.interfaces) == 1:
         return ("reflection",)
     return ("reflection/internal", "reflection")
 

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..scene import distinct_channels
+from ..scene import distinct_channels, optical_stack
 from ..slices import PARAMETRIZATIONS, slice_geometry
 from .layout import DOWN, UP
-from .stages import LAMBERT, OPAQUE, lower
+from .stages import LAMBERT, OPAQUE, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC, lower
+from .stages.smooth_conductor import ETA, KAPPA
 
 # The order (events on the top interface) with which a path can first leave upwards after having
 # entered the stack, and downwards.
@@ -96,13 +97,21 @@ class Plan:
             self.orders > 0,
         )
 
+    @property
+    def mirrors(self):
+        """Whether each interface is smooth and reflects anything; ndarray of bool, shape (K,)."""
+        black = ((self.spectral[:, ETA] == 1.0) & (self.spectral[:, KAPPA] == 0.0)).all(axis=1)
+        reflects = np.where(self.kinds == SMOOTH_CONDUCTOR, ~black, self.etas != 1.0)
+        return np.isin(self.kinds, (SMOOTH_DIELECTRIC, SMOOTH_CONDUCTOR)) & reflects
+
     def has_specular_chain(self, side):
         """Whether light can leave upwards (inside the stack) or downwards by smooth interfaces alone."""
-        smooth = self.alphas == 0.0
-        smooth[self.kinds == LAMBERT] = False
+        # No light enters a medium whose index is below the sine of its angle outside.
+        enters = np.cumprod(self.etas) > self.light[:, 0].min()
+        passed = np.logical_and.accumulate((self.kinds == SMOOTH_DIELECTRIC) & enters)
         if side == DOWN:
-            return bool(smooth.all())
-        return bool(len(smooth) > 1 and smooth[0] and smooth[1])
+            return bool(passed[-1])
+        return bool((passed[:-1] & self.mirrors[1:]).any())
 
 
 def make_plan(scene):
@@ -117,7 +126,8 @@ def make_plan(scene):
     Plan
     """
     distinct, position = distinct_channels(scene)
-    interfaces = scene.material.interfaces
+    material = optical_stack(scene.material).material
+    interfaces = material.interfaces
     k = len(interfaces)
     kinds = np.zeros(k, np.int64)
     alphas = np.zeros(k)
@@ -128,9 +138,10 @@ def make_plan(scene):
         kinds[i], alphas[i], etas[i], rows = lower(interface, above)
         for row, values in enumerate(rows):
             spectral[i, row] = [values[c] for c in distinct]
-        above *= etas[i]
+        # The index itself: a product of ratios would not come back to it exactly.
+        above = above if interface.opaque else interface.eta
     taus = np.zeros((max(k - 1, 1), len(distinct)))
-    for i, tau in enumerate(scene.material.tau):
+    for i, tau in enumerate(material.tau):
         taus[i] = [tau[c] for c in distinct]
 
     orders = scene.simulation.orders or 0

@@ -31,6 +31,8 @@ class Prepared:
         smooth interfaces, which no value per steradian can hold. Most often zero.
     position : list of int
         Of each channel of the scene, its place among the distinct ones.
+    narrowest : float
+        GGX width of the narrowest lobe that has values per steradian, for those who integrate it.
     """
 
     kernel: Callable
@@ -38,6 +40,7 @@ class Prepared:
     light: np.ndarray
     mirror_energy: np.ndarray
     position: list
+    narrowest: float
 
     @property
     def channels(self) -> int:

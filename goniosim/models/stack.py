@@ -10,12 +10,13 @@ from ..optics.fresnel import fresnel_conductor, fresnel_dielectric
 from ..optics.ggx import smith_g1
 from ..optics.masking import height_correlation
 from ..optics.microfacet import microfacet_reflection
+from ..scene import optical_stack
 
 DIELECTRIC, CONDUCTOR, LAMBERT = range(3)
 _KINDS = {"dielectric": DIELECTRIC, "conductor": CONDUCTOR, "lambert": LAMBERT}
 
 # Narrowest lobe of the kernels: stands for alpha = 0 where the value is discarded anyway.
-_NARROWEST = 1e-6
+NARROWEST = 1e-6
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class Stack:
 
 
 def make_stack(material, conductor_index="relative"):
-    """Lower a material.
+    """Lower a material, as light meets it: see `goniosim.scene.optical`.
 
     Parameters
     ----------
@@ -56,6 +57,7 @@ def make_stack(material, conductor_index="relative"):
     -------
     Stack
     """
+    material = optical_stack(material).material
     faces = material.interfaces
     channels = 3
     index = np.ones(len(faces) + 1)
@@ -84,7 +86,7 @@ def light_direction(theta_deg):
 
 def kernel_alphas(alphas):
     """GGX widths that a kernel can compute with."""
-    return np.maximum(alphas, _NARROWEST)
+    return np.maximum(alphas, NARROWEST)
 
 
 @scalar

@@ -58,6 +58,16 @@ def float_to_bits(typingctx, number):
     return types.uint64(types.float64), codegen
 
 
+@intrinsic
+def fma(typingctx, x, y, z):
+    """``x * y + z`` of float64, rounded once."""
+
+    def codegen(context, builder, signature, args):
+        return builder.fma(*args)
+
+    return types.float64(types.float64, types.float64, types.float64), codegen
+
+
 @scalar
 def sincos_turns(u):
     """Sine and cosine of ``2 pi u`` for u in [0, 1]."""

@@ -27,11 +27,13 @@ def microfacet_reflection(lx, ly, lz, vx, vy, vz, alpha):
     hx = lx + vx
     hy = ly + vy
     hz = lz + vz
-    inverse = 1.0 / math.sqrt(max(hx * hx + hy * hy + hz * hz, 1e-300))
+    square = hx * hx + hy * hy + hz * hz
+    inverse = 1.0 / math.sqrt(max(square, 1e-300))
     hx *= inverse
     hy *= inverse
     hz *= inverse
-    cosine = min(1.0, max(0.0, lx * hx + ly * hy + lz * hz))
+    # l.h = |l + v| / 2: the same for l and v to the last bit, and exact where both graze.
+    cosine = min(1.0, 0.5 * square * inverse)
     above = (lz > 0.0) & (vz > 0.0)
     d = ggx_density(hx * hx + hy * hy, hz, alpha)
     g = smith_g1(lz, alpha) * smith_g1(vz, alpha)

@@ -10,14 +10,31 @@ from .._jit import scalar
 
 
 @scalar
-def refracted_cosine(sin2, ratio):
-    """Cosine below for the squared sine above; 0 under total internal reflection.
+def refracted_cosine(cosine, ratio):
+    """Cosine below for the cosine above; 0 under total internal reflection.
+
+    Cosines keep the digits that a squared sine close to 1 has lost.
 
     Parameters
     ----------
-    sin2 : float
-        Squared sine of the angle to the axis of refraction, above.
+    cosine : float
+        Of the angle to the axis of refraction, above; in [0, 1].
     ratio : float
         Index above over index below.
     """
-    return math.sqrt(max(0.0, 1.0 - ratio * ratio * sin2))
+    scaled = ratio * cosine
+    return math.sqrt(max(0.0, (1.0 - ratio) * (1.0 + ratio) + scaled * scaled))
+
+
+@scalar
+def refraction_shift(cosine, ratio, below):
+    """The k of the direction below, ``below - ratio * cosine`` without a difference of nearly equal numbers.
+
+    Parameters
+    ----------
+    cosine, ratio : float
+        As in `refracted_cosine`.
+    below : float
+        What that returned; where it is 0, k means nothing.
+    """
+    return (1.0 - ratio) * (1.0 + ratio) / max(below + ratio * cosine, 1e-30)

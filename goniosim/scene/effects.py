@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from goniosim.scene.layers import Interface
 from goniosim.scene.model import Scene
+from goniosim.scene.optical import optical_stack
 from goniosim.scene.quantity import CHANNELS
 
 _COLOURS = ("red", "green", "blue")
@@ -38,9 +39,11 @@ def effects(scene: Scene) -> list[Effect]:
     list of Effect
         Always the same names in the same order.
     """
+    optical = optical_stack(scene.material)
+    layers = list(zip(optical.places, optical.material.layers, strict=True))
     interfaces = [
-        (f"layers[{index}] ({_described(layer.interface)})", layer.interface)
-        for index, layer in enumerate(scene.material.layers)
+        (f"layers[{place}] ({_described(layer.interface, place in optical.absent)})", layer.interface)
+        for place, layer in layers
         if layer.interface is not None
     ]
     facets = [(place, face) for place, face in interfaces if face.type != "lambert"]
@@ -49,8 +52,8 @@ def effects(scene: Scene) -> list[Effect]:
     lambertian = [place for place, face in interfaces if face.type == "lambert"]
     metal = [place for place, face in interfaces if face.type == "conductor"]
     absorbing = [
-        f"layers[{index}] (medium, tau {_number(layer.medium.tau)})"
-        for index, layer in enumerate(scene.material.layers)
+        f"layers[{place}] (medium, tau {_number(layer.medium.tau)})"
+        for place, layer in layers
         if layer.medium is not None and any(layer.medium.tau_rgb)
     ]
     bottom = interfaces[-1][0]
@@ -82,6 +85,26 @@ def effects(scene: Scene) -> list[Effect]:
     ]
 
 
+def absent_interfaces(scene: Scene) -> list[str]:
+    """Say which interfaces lie between equal indices, and so do nothing.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    list of str
+        One sentence for each.
+    """
+    layers = scene.material.layers
+    return [
+        f"layers[{place}] ({_described(layers[place].interface)}) is optically absent: "
+        "the indices above and below it are equal"
+        for place in optical_stack(scene.material).absent
+    ]
+
+
 def distinct_channels(scene: Scene) -> tuple[list[int], list[int]]:
     """Group the channels in which all parameters of the material agree.
 
@@ -101,8 +124,9 @@ def distinct_channels(scene: Scene) -> tuple[list[int], list[int]]:
 
 
 def _per_channel(scene: Scene) -> list[tuple[float, ...]]:
-    triples = list(scene.material.tau)
-    for face in scene.material.interfaces:
+    material = optical_stack(scene.material).material
+    triples = list(material.tau)
+    for face in material.interfaces:
         if face.type == "conductor":
             triples += [face.eta_rgb, face.kappa_rgb]
         elif face.type == "lambert":
@@ -126,7 +150,9 @@ def _asked(name: str, places: list[str], absent: str) -> Effect:
     return Effect(name, bool(places), f"asked for by {', '.join(places)}" if places else absent)
 
 
-def _described(face: Interface) -> str:
+def _described(face: Interface, absent: bool = False) -> str:
+    if absent:
+        return f"{face.type}, equal indices"
     if face.type == "lambert":
         return f"lambert, rho {_number(face.rho)}"
     return f"{face.type}, alpha {_number(face.alpha)}"

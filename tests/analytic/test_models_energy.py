@@ -126,6 +126,22 @@ def test_reciprocity(name, options):
     assert there == pytest.approx(back, rel=1e-9)
 
 
+@pytest.mark.parametrize("name", RECIPROCAL)
+@pytest.mark.parametrize("eta", [1.5, 0.8, 1.0 + 1e-9])
+@pytest.mark.parametrize("smooth_top", [False, True])
+def test_reciprocity_up_to_the_horizon(name, eta, smooth_top):
+    """Cosines are carried along: a squared sine next to 1 has lost them."""
+    grazing = [90.0 - 10.0**-e for e in range(1, 8)]
+    there, back = [0.0, 45.0, *grazing], [30.0, 80.0, *grazing]
+    theta_1, theta_2, phi = (a.ravel() for a in np.meshgrid(there, back, [0.0, 50.0, 179.0, 180.0]))
+    top = dielectric(eta, 0.0 if smooth_top else 0.1)
+    scene = make_scene([top, medium([0.1, 0.2, 0.8]), dielectric(1.3, 0.2), conductor(1.2, 1.0, 0.3)], 0)
+    for component in ("reflection/direct", "reflection/internal"):
+        one = evaluate_model(name, scene, theta_1, theta_2, phi, component)
+        other = evaluate_model(name, scene, theta_2, theta_1, phi, component)
+        assert one == pytest.approx(other, rel=1e-10, abs=0.0)
+
+
 def test_forward_is_not_reciprocal():
     scene = make_scene([dielectric(1.5, 0.2), conductor(1.45, 1.0, 0.2)], 0)
     there = evaluate_model("belcour18_forward", scene, 20, 70, 170)

@@ -56,7 +56,7 @@ def _prepare(scene, theta_i_deg, component, options):
     rho = options.gain * make_stack(scene.material).spectral[-1, 0, distinct]
     if component == "reflection/direct":
         rho = 0.0 * rho
-    return Prepared(_evaluate, (rho,), light_direction(theta_i_deg), np.zeros(len(distinct)), position)
+    return Prepared(_evaluate, (rho,), light_direction(theta_i_deg), np.zeros(len(distinct)), position, 1.0)
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from goniosim.engine import simulate
+from reference import exact_fresnel
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 THETAS = [0, 1e-6, 45, 89, 89.99]
@@ -84,6 +85,14 @@ def test_black_base():
 
 def test_perfect_mirror_below_a_rough_coat_absorbs_nothing():
     assert total("kappa huge", "absorbed_base").max() < 1e-6
+
+
+def test_a_good_mirror_absorbs_to_the_last_digit():
+    """1 - R of kappa 1e6 is 4e-12 at normal incidence; the difference of the weights would know it to 1e-4."""
+    audit = simulate(make_scene([conductor(1.0, 1e6)], THETAS, rows=9, columns=9), rays=1000).audit
+    for theta, absorbed in zip(THETAS, audit.energy["absorbed_base"][:, 0], strict=True):
+        _, exact = exact_fresnel.conductor(np.cos(np.radians(theta)), 1.0, 1e6)
+        assert absorbed == pytest.approx(float(exact), rel=1e-12)
 
 
 def test_matched_conductor_reflects_nothing():

@@ -35,7 +35,7 @@ def make_grid(parametrization, rows, columns, theta_deg):
     return Grid(parametrization, rows, columns, theta_deg, geometry.valid, geometry.projected_solid_angle)
 
 
-def stand_in(function, numbers, grid, channels=1, mirror_energy=None):
+def stand_in(function, numbers, grid, channels=1, mirror_energy=None, narrowest=1.0):
     """What a model prepares, with a kernel of ours."""
     return SimpleNamespace(
         kernel=function,
@@ -44,6 +44,7 @@ def stand_in(function, numbers, grid, channels=1, mirror_energy=None):
         channels=channels,
         mirror_energy=np.zeros(channels) if mirror_energy is None else np.array(mirror_energy),
         position=list(range(channels)),
+        narrowest=narrowest,
     )
 
 
@@ -112,9 +113,9 @@ def test_lobes_agree_with_adaptive_quadrature(pool, parametrization, theta_deg):
     """A lobe of width 0.1 in cells of 6 by 30 degrees: sub-cells to 2 %, refined ones to 1e-3 of the lobe."""
     alpha = 0.1
     grid = make_grid(parametrization, 15, 12, theta_deg)
-    model = stand_in(_ggx, [alpha], grid)
+    model = stand_in(_ggx, [alpha], grid, narrowest=alpha)
     coarse, spread = integrate_fixed(model, grid, 15, pool)
-    levels = converge(model, grid, 15, pool, coarse, spread, alpha)
+    levels = converge(model, grid, 15, pool, coarse, spread)
     coarse, refined = (to_slice(model, grid, energy)[0] for energy in (levels.coarse, levels.converged))
     flux = _flux(parametrization, theta_deg, alpha)
     strongest = np.argsort(refined.ravel())[-12:]
@@ -138,9 +139,9 @@ def test_lobes_agree_with_adaptive_quadrature(pool, parametrization, theta_deg):
 def test_spikes_are_found_by_refinement(pool, theta_deg, alpha):
     """A white lobe far narrower than the cells carries its energy G1(l), though sub-cells lose it."""
     grid = make_grid("classic", 90, 360, theta_deg)
-    model = stand_in(_ggx, [alpha], grid)
+    model = stand_in(_ggx, [alpha], grid, narrowest=alpha)
     coarse, spread = integrate_fixed(model, grid, 5, pool)
-    levels = converge(model, grid, 5, pool, coarse, spread, alpha)
+    levels = converge(model, grid, 5, pool, coarse, spread)
     refined = to_slice(model, grid, levels.converged)
     assert levels.integration == "adaptive"
     assert abs(coarse.sum() * 2.0 - 1.0) > 0.1

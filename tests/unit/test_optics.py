@@ -80,11 +80,6 @@ def test_total_reflection(c):
     assert _dielectric(c, 1 / 1.5) == (1.0, 0.0)
 
 
-def test_matched_index_reflects_nothing():
-    for c in np.logspace(-6, 0, 20):
-        assert _dielectric(c, 1.0)[0] < 1e-9
-
-
 def test_fresnel_average_of_glass():
     mean = integrate.quad(lambda c: 2 * c * _dielectric(c, 1.5)[0], 0, 1)[0]
     assert mean == pytest.approx(0.091778, abs=5e-7)

@@ -27,8 +27,8 @@ def scene(*layers, **simulation):
     )
 
 
-def coat(alpha=0.0):
-    return {"interface": {"type": "dielectric", "eta": 1.5, "alpha": alpha}}
+def coat(alpha=0.0, eta=1.5):
+    return {"interface": {"type": "dielectric", "eta": eta, "alpha": alpha}}
 
 
 def base(rho=0.5):
@@ -57,7 +57,7 @@ def found(one):
         (scene(coat(), base()), {"smooth_interfaces", "lambertian", "internal_paths"}),
         (scene(coat(), medium(0), base()), {"smooth_interfaces", "lambertian", "internal_paths"}),
         (
-            scene(coat(), medium(0.1), coat(0.1)),
+            scene(coat(), medium(0.1), coat(0.1, eta=1.0)),
             {"smooth_interfaces", "rough_interfaces", "absorption", "transmission", "internal_paths"},
         ),
         (

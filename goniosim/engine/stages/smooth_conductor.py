@@ -1,7 +1,7 @@
 """Perfectly smooth opaque conductor: Fresnel reflectance per channel, mirror direction."""
 
 from ..._jit import stage
-from ...optics.fresnel import fresnel_conductor
+from ...optics.fresnel import conductor_absorptance, fresnel_conductor
 from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, Z
 
 ETA, KAPPA = 0, 1
@@ -35,7 +35,7 @@ def absorb_in_conductor(batch, n, spectral, cosines, ledger):
         absorbed = 0.0
         for i in range(n):
             before = weight[i]
-            after = before * fresnel_conductor(cosines[i], eta, kappa)
-            weight[i] = after
-            absorbed += before - after
+            weight[i] = before * fresnel_conductor(cosines[i], eta, kappa)
+            # Not the difference of the weights, which has no digits left for a good mirror.
+            absorbed += before * conductor_absorptance(cosines[i], eta, kappa)
         ledger[ABSORBED_BASE, c] += absorbed

@@ -58,7 +58,7 @@ def directional_albedo(kind, cosine, alpha, eta, kappa, correlated):
 
 @kernel
 def _sum(kind, cosine, alpha, eta, kappa, correlated, nodes, weights, cosines, sines):
-    sine = math.sqrt(max(0.0, 1.0 - cosine * cosine))
+    sine = math.sqrt(max(0.0, (1.0 - cosine) * (1.0 + cosine)))
     g_l = smith_g1(cosine, alpha)
     total = 0.0
     for i in range(nodes.shape[0]):

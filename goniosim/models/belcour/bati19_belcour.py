@@ -38,33 +38,34 @@ def evaluate(tables, light, x, y, z, out):
 
 
 @kernel
-def _mirror_reflectance(kind, eta, spectral, cosine, out):
+def _add_mirror_reflectance(kind, eta, spectral, cosine, out):
     for c in range(out.shape[0]):
         if kind == DIELECTRIC:
             reflectance, _ = fresnel_dielectric(cosine, eta)
-            out[c] = reflectance
+            out[c] += reflectance
         else:
-            out[c] = fresnel_conductor(cosine, spectral[0, c], spectral[1, c])
+            out[c] += fresnel_conductor(cosine, spectral[0, c], spectral[1, c])
 
 
 def _prepare(scene, theta_i_deg, component, options):
     if component == "reflection/internal":
         return prepare_forward(scene, theta_i_deg, component, options)
     inner = prepare_forward(scene, theta_i_deg, "reflection/internal", options)
-    lobes = inner.tables
+    lobes, mirror_energy = inner.tables, inner.mirror_energy.copy()
     if component == "reflection/direct":
         lobes = (lobes[0][:0], lobes[1][:0], lobes[2])
+        mirror_energy[:] = 0.0
     stack = make_stack(scene.material)
     distinct, position = distinct_channels(scene)
     light = light_direction(theta_i_deg)
     kind, eta = int(stack.kinds[0]), float(stack.index[1] / stack.index[0])
     spectral = np.ascontiguousarray(stack.spectral[0][:, distinct])
     rough = bool(stack.alphas[0] > 0.0)
-    mirror_energy = np.zeros(len(distinct))
     if not rough:
-        _mirror_reflectance(kind, eta, spectral, light[2], mirror_energy)
-    tables = (kind, eta, spectral, float(kernel_alphas(stack.alphas)[0]), rough, lobes)
-    return Prepared(evaluate, tables, light, mirror_energy, position)
+        _add_mirror_reflectance(kind, eta, spectral, light[2], mirror_energy)
+    alpha = float(kernel_alphas(stack.alphas)[0])
+    narrowest = min([alpha] * rough + [inner.narrowest] * len(lobes[1]), default=1.0)
+    return Prepared(evaluate, (kind, eta, spectral, alpha, rough, lobes), light, mirror_energy, position, narrowest)
 
 
 MODEL = Model(

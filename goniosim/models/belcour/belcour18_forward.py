@@ -6,10 +6,10 @@ A slab has two lobes instead, from the accumulated statistics (the published plu
 reflection, and all transmission about the refracted direction.
 """
 
-import math
-
 import numpy as np
 
+from ...optics.refraction import refracted_cosine
+from ...scene import optical_stack
 from ..model import Model
 from ..stack import light_direction
 from .albedo import WHITE, directional_albedo
@@ -38,23 +38,20 @@ def _prepare(scene, theta_i_deg, component, options):
     lobe = reflection
     if component == "transmission":
         lobe = transmission
-        light = _refracted_light(light, scene.material.interfaces[-1].eta)
+        light = _refracted_light(light, 1.0 / optical_stack(scene.material).material.interfaces[-1].eta)
     energy, alpha = lobe[:-1], lobe[-1]
     if options.normalise_lobes:
         energy = energy / directional_albedo(WHITE, light[2], alpha, 1.0, 0.0, options.masking == "correlated")
     return prepare_lobes(scene, options, light, energy[None], np.array([alpha]))
 
 
-def _refracted_light(light, eta):
+def _refracted_light(light, ratio):
     """The direction whose mirror image is the light refracted into the last medium.
 
     Under total reflection there is none: the energy of the lobe is zero and the direction does not matter.
     """
-    ratio = 1.0 / eta
-    sin2 = ratio * ratio * (light[0] ** 2 + light[1] ** 2)
-    if sin2 >= 1.0:
-        return light
-    return np.array([ratio * light[0], ratio * light[1], math.sqrt(1.0 - sin2)])
+    below = refracted_cosine.py_func(light[2], ratio)
+    return np.array([ratio * light[0], ratio * light[1], below]) if below > 0.0 else light
 
 
 MODEL = Model(

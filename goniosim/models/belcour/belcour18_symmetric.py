@@ -3,7 +3,7 @@
     f(l, v) = sum_k e_k(l.h) D(h; alpha_k) G(l, v; alpha_k) / (4 (l.n) (v.n)),  alpha_k = alpha_k(l.h)
 
 The statistics are tabulated over t = sqrt(l.h), which spreads out the grazing angles, and
-interpolated by cubics.
+interpolated by cubics. Dirac lobes, of smooth interfaces, take theirs from the sweep itself.
 """
 
 import math
@@ -15,12 +15,12 @@ from ..._jit import kernel
 from ...optics.microfacet import microfacet_reflection
 from ...scene import distinct_channels
 from ..model import Model, Prepared
-from ..stack import ggx_lobe, light_direction
+from ..stack import NARROWEST, ggx_lobe, light_direction
 from .lobes import (
-    NARROWEST,
     Options,
     belcour_tables,
     lobes_of,
+    statistics,
     supports_conductor_base,
 )
 from .sweep import sweep
@@ -98,11 +98,18 @@ def evaluate(tables, light, x, y, z, out):
 
 def _prepare(scene, theta_i_deg, component, options):
     distinct, position = distinct_channels(scene)
-    table = _statistics(scene.material, options)[:, lobes_of(component)]
+    light = light_direction(theta_i_deg)
+    part = lobes_of(component)
+    table = _statistics(scene.material, options)[:, part]
+    dirac = (table[:, :, -1] == 0.0).all(axis=0)
+    # In the mirror direction l.h is l.n.
+    energy, _, _, _ = statistics(scene, light[2], options)
+    mirror_energy = energy[part][dirac].sum(axis=0)[distinct]
     # Energies of the distinct channels, then the width.
-    table = np.ascontiguousarray(table[:, :, [*distinct, -1]].transpose(1, 0, 2))
+    table = np.ascontiguousarray(table[:, ~dirac][:, :, [*distinct, -1]].transpose(1, 0, 2))
     tables = (table, options.masking == "correlated")
-    return Prepared(evaluate, tables, light_direction(theta_i_deg), np.zeros(len(distinct)), position)
+    narrowest = max(table[..., -1].min(initial=1.0), NARROWEST)
+    return Prepared(evaluate, tables, light, mirror_energy, position, narrowest)
 
 
 MODEL = Model(

@@ -8,11 +8,8 @@ from ..._jit import kernel
 from ...scene import distinct_channels
 from ..model import Prepared
 from ..options import masking_option, option
-from ..stack import ggx_lobe, light_direction, make_stack
+from ..stack import ggx_lobe, kernel_alphas, light_direction, make_stack
 from .sweep import sweep
-
-# Width to which a lobe is widened so that it has a value per steradian.
-NARROWEST = 1e-4
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,7 @@ def statistics(scene, cosine, options):
     energy : ndarray, shape (K, 3)
         Of the lobe of each interface.
     alpha : ndarray, shape (K,)
-        GGX width of each lobe.
+        GGX width of each lobe; 0 for a Dirac lobe, made by smooth interfaces alone.
     reflection, transmission : ndarray, shape (4,)
         Energies per channel and GGX width of all that is reflected, and of all that is transmitted.
     """
@@ -107,14 +104,16 @@ def lobes_of(component):
 
 
 def prepare_lobes(scene, options, light, energy, alpha):
-    """A sum of GGX lobes about the mirror image of ``light``; energies [lobe, 3], widths [lobe]."""
+    """A sum of lobes about the mirror image of ``light``: GGX lobes, and Dirac lobes where the width is 0.
+
+    Energies [lobe, 3], widths [lobe].
+    """
     distinct, position = distinct_channels(scene)
-    tables = (
-        np.ascontiguousarray(np.asarray(energy)[:, distinct]),
-        np.maximum(alpha, NARROWEST),
-        options.masking == "correlated",
-    )
-    return Prepared(evaluate, tables, light, np.zeros(len(distinct)), position)
+    energy = energy[:, distinct]
+    dirac = alpha == 0.0
+    widths = kernel_alphas(alpha[~dirac])
+    tables = (energy[~dirac], widths, options.masking == "correlated")
+    return Prepared(evaluate, tables, light, energy[dirac].sum(axis=0), position, widths.min(initial=1.0))
 
 
 def prepare_forward(scene, theta_i_deg, component, options):

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..._jit import kernel, scalar
-from ...optics.fresnel import fresnel_conductor, fresnel_dielectric
+from ...optics.fresnel import dielectric_transmittance, fresnel_conductor, fresnel_dielectric
 from ..stack import CONDUCTOR
 from .albedo import WHITE, directional_albedo
 
@@ -52,7 +52,7 @@ def sweep(kinds, alphas, etas, spectral, taus, cosine, flags, energy, lobe_alpha
     energy : ndarray, shape (K, C), out
         Energy of the lobe of every interface; 0 where no light arrives.
     lobe_alpha : ndarray, shape (K,), out
-        GGX width of every lobe.
+        GGX width of every lobe; 0 if all interfaces that it has met are smooth.
     total : ndarray, shape (2, C + 1), out
         Energies and GGX width of all reflection (0) and all transmission (1).
     """
@@ -72,19 +72,22 @@ def sweep(kinds, alphas, etas, spectral, taus, cosine, flags, energy, lobe_alpha
     for k in range(kinds.shape[0]):
         n12 = etas[k]
         fresnel, ct = fresnel_dielectric(c, n12)
+        through = dielectric_transmittance(c, n12)
         transmissive = (kinds[k] != CONDUCTOR) & (ct > 0.0)
         s_r = _variance(alphas[k])
         seen_alpha = _roughness(s_t0 + s_r)
+        # The albedo of what light sees as smooth is the Fresnel reflectance.
+        by_facets = exact & (seen_alpha > 0.0)
         for b in range(n_channels):
             if kinds[k] == CONDUCTOR:
                 r12[b] = fresnel_conductor(c, spectral[k, 0, b], spectral[k, 1, b])
-                if exact:
+                if by_facets:
                     r12[b] = directional_albedo(
                         kinds[k], c, seen_alpha, spectral[k, 0, b], spectral[k, 1, b], correlated
                     )
             elif b == 0:
                 r12[b] = fresnel
-                if exact:
+                if by_facets:
                     r12[b] = directional_albedo(kinds[k], c, seen_alpha, n12, 0.0, correlated)
             else:
                 r12[b] = r12[0]
@@ -92,8 +95,10 @@ def sweep(kinds, alphas, etas, spectral, taus, cosine, flags, energy, lobe_alpha
         j12 = j21 = 1.0
         if transmissive:
             # A rough refraction counts as a rough reflection of scaled width.
-            tilt_in = 0.5 * abs(n12 - 1.0) / n12 if normal_scale else 0.5 * abs(n12 * ct - c) / (n12 * ct)
-            tilt_out = 0.5 * abs(n12 - 1.0) if normal_scale else 0.5 * abs(c - n12 * ct) / c
+            # n12 ct - c without the difference
+            tilt = 0.5 * abs((n12 - 1.0) * (n12 + 1.0)) / (n12 * ct + c)
+            tilt_in = 0.5 * abs(n12 - 1.0) / n12 if normal_scale else tilt / (n12 * ct)
+            tilt_out = 0.5 * abs(n12 - 1.0) if normal_scale else tilt / c
             s_t12 = _variance(tilt_in * alphas[k])
             s_t21 = _variance(tilt_out * alphas[k])
             j12 = n12 * ct / c
@@ -105,7 +110,8 @@ def sweep(kinds, alphas, etas, spectral, taus, cosine, flags, energy, lobe_alpha
 
         mean_rr = mean_mr = mean_mri = mean_r0 = mean_r21 = 0.0
         for b in range(n_channels):
-            t12 = 1.0 - r12[b] if transmissive else 0.0
+            t12 = 1.0 - r12[b] if by_facets else through
+            t12 = t12 if transmissive else 0.0
             inverse = 1.0 / max(1.0 - ri[b] * r12[b], _LEAST_DENOMINATOR)
             m_r = t0[b] * r12[b] * ti[b] * inverse
             m_ri = t12 * ri[b] * t12 * inverse

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..._jit import kernel
-from ...optics.fresnel import fresnel_dielectric
+from ...optics.fresnel import dielectric_transmittance
 from ...optics.medium import path_length
 from ...optics.refraction import refracted_cosine
 from ..model import Model
@@ -60,25 +60,22 @@ def _cross(k, tables, light, x, y, z, lobe, cosine, through, path):
     correlated = tables.correlated
     above = tables.ratios[FACE, k]
     below = tables.ratios[BELOW, k]
-    sin2_l = light[0] * light[0] + light[1] * light[1]
     lx = above * light[0]
     ly = above * light[1]
-    lz = refracted_cosine(sin2_l, above)
-    l1 = refracted_cosine(sin2_l, below)
+    lz = refracted_cosine(light[2], above)
+    l1 = refracted_cosine(light[2], below)
     # J = (N_k / N_{k+1})^2, Appendix C of Bati et al.
     jacobian = 1.0 / (eta * eta)
-    reflectance_l, _ = fresnel_dielectric(lz, eta)
+    through_l = dielectric_transmittance(lz, eta)
     for i in range(x.shape[0]):
-        sin2_v = x[i] * x[i] + y[i] * y[i]
-        vz = refracted_cosine(sin2_v, above)
+        vz = refracted_cosine(z[i], above)
         value, facet = ggx_lobe(lx, ly, lz, above * x[i], above * y[i], vz, alpha, correlated)
         lobe[i] = unit if unit > 0.0 else value
         cosine[i] = facet
 
-        reflectance_v, _ = fresnel_dielectric(vz, eta)
-        v1 = refracted_cosine(sin2_v, below)
+        v1 = refracted_cosine(z[i], below)
         possible = (l1 > 0.0) & (v1 > 0.0)
-        through[i] = (1.0 - reflectance_l) * (1.0 - reflectance_v) * jacobian if possible else 0.0
+        through[i] = through_l * dielectric_transmittance(vz, eta) * jacobian if possible else 0.0
         path[i] = path_length(l1) + path_length(v1)
 
 

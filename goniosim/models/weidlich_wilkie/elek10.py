@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..._jit import kernel
-from ...optics.fresnel import fresnel_dielectric
+from ...optics.fresnel import dielectric_transmittance
 from ...optics.ggx import smith_g1
 from ...optics.masking import height_correlation
 from ...optics.medium import path_length
@@ -67,29 +67,27 @@ def _cross(k, tables, light, x, y, z, lobe, cosine, through, path):
     vgroove = tables.vgroove
     above = tables.ratios[FACE, k]
     below = tables.ratios[BELOW, k]
-    sin2_l = light[0] * light[0] + light[1] * light[1]
     lx = above * light[0]
     ly = above * light[1]
-    lz = refracted_cosine(sin2_l, above)
-    l1 = refracted_cosine(sin2_l, below)
+    lz = refracted_cosine(light[2], above)
+    l1 = refracted_cosine(light[2], below)
     for i in range(x.shape[0]):
-        sin2_v = x[i] * x[i] + y[i] * y[i]
-        vz = refracted_cosine(sin2_v, above)
+        vz = refracted_cosine(z[i], above)
         value, facet = ggx_lobe(lx, ly, lz, above * x[i], above * y[i], vz, alpha, correlated)
         lobe[i] = unit if unit > 0.0 else value
         cosine[i] = facet
 
-        reflectance, _ = fresnel_dielectric(facet, eta)
+        through_facet = dielectric_transmittance(facet, eta)
         g_l = smith_g1(lz, t_alpha)
         g_v = smith_g1(vz, t_alpha)
         smith = g_l * g_v * height_correlation(g_l, g_v, correlated)
         # |l + v| = 2 l.h for unit vectors
         hz = (lz + vz) / max(2.0 * facet, 1e-300)
         g = min(1.0, 2.0 * hz * min(lz, vz) / max(facet, 1e-300)) if vgroove else smith
-        t = (1.0 - g) + (1.0 - reflectance) * g
-        v1 = refracted_cosine(sin2_v, below)
+        t = (1.0 - g) + through_facet * g
+        v1 = refracted_cosine(z[i], below)
         possible = (l1 > 0.0) & (v1 > 0.0)
-        through[i] = (1.0 - reflectance) * t if possible else 0.0
+        through[i] = through_facet * t if possible else 0.0
         path[i] = path_length(l1) + path_length(v1)
 
 

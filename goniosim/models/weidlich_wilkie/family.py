@@ -124,7 +124,10 @@ def prepare(kernel, scene, theta_i_deg, component, options, *, widened, ratios):
         only_smooth = tables._replace(counted=asked & ~rough, unit=spread)
         x, y, z = (np.array([w]) for w in (-light[0], -light[1], light[2]))
         kernel(only_smooth, light, x, y, z, mirror_energy)
-    return Prepared(kernel, tables, light, mirror_energy[:, 0], position)
+    # Seen from outside, a lobe inside a thinner medium is narrower.
+    widths = tables.alphas * np.minimum(1.0, 1.0 / tables.ratios[LOBE])
+    narrowest = widths[tables.counted & ~lambert].min(initial=1.0)
+    return Prepared(kernel, tables, light, mirror_energy[:, 0], position, narrowest)
 
 
 def running_ratios(index):

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..._jit import kernel
-from ...optics.fresnel import fresnel_dielectric
+from ...optics.fresnel import dielectric_transmittance
 from ...optics.ggx import smith_g1
 from ...optics.masking import height_correlation
 from ...optics.medium import path_length
-from ...optics.refraction import refracted_cosine
+from ...optics.refraction import refracted_cosine, refraction_shift
 from ..model import Model
 from ..options import masking_option, option
 from ..stack import add_lobe, ggx_lobe
@@ -83,14 +83,15 @@ def _cross(k, tables, light, x, y, z, lobe, cosine, through, path):
         hx = lx + x[i]
         hy = ly + y[i]
         hz = lz + z[i]
-        inverse = 1.0 / math.sqrt(hx * hx + hy * hy + hz * hz)
+        square = hx * hx + hy * hy + hz * hz
+        inverse = 1.0 / math.sqrt(square)
         hx *= inverse
         hy *= inverse
         hz *= inverse
-        c = min(1.0, lx * hx + ly * hy + lz * hz)
-        sin2 = 1.0 - c * c
+        # l.h = |l + v| / 2 of unit vectors
+        c = min(1.0, 0.5 * square * inverse)
 
-        shift = refracted_cosine(sin2, to_lobe) - to_lobe * c
+        shift = refraction_shift(c, to_lobe, refracted_cosine(c, to_lobe))
         value, facet = ggx_lobe(
             to_lobe * lx + shift * hx,
             to_lobe * ly + shift * hy,
@@ -104,18 +105,18 @@ def _cross(k, tables, light, x, y, z, lobe, cosine, through, path):
         lobe[i] = unit if unit > 0.0 else value
         cosine[i] = facet
 
-        reflectance, _ = fresnel_dielectric(refracted_cosine(sin2, to_face), eta)
-        inside = refracted_cosine(sin2, to_below)
-        shift = inside - to_below * c
+        through_facet = dielectric_transmittance(refracted_cosine(c, to_face), eta)
+        inside = refracted_cosine(c, to_below)
+        shift = refraction_shift(c, to_below, inside)
         l1 = to_below * lz + shift * hz
         v1 = to_below * z[i] + shift * hz
         g_l = smith_g1(l1, t_alpha)
         g_v = smith_g1(v1, t_alpha)
         smith = g_l * g_v * height_correlation(g_l, g_v, correlated)
         g = min(1.0, 2.0 * hz * min(l1, v1) / max(inside, 1e-300)) if vgroove else smith
-        t = (1.0 - g) + (1.0 - reflectance) * g
-        possible = (to_below * to_below * sin2 < 1.0) & (l1 > 0.0) & (v1 > 0.0)
-        through[i] = (1.0 - reflectance) * t if possible else 0.0
+        t = (1.0 - g) + through_facet * g
+        possible = (inside > 0.0) & (l1 > 0.0) & (v1 > 0.0)
+        through[i] = through_facet * t if possible else 0.0
         path[i] = path_length(l1) + path_length(v1)
 
 

@@ -103,7 +103,7 @@ def forecasts(scenes):
 
 def effects_text(scene):
     """List the effects that a scene calls for, and those it does without, each with the reason."""
-    from goniosim.scene import effects
+    from goniosim.scene import absent_interfaces, effects
 
     found = effects(scene)
     width = max(len(effect.name) for effect in found)
@@ -112,6 +112,9 @@ def effects_text(scene):
         lines = [f"  {e.name.ljust(width)}   {e.why}" for e in found if e.active == wanted]
         if lines:
             blocks.append("\n".join([heading, *lines]))
+    idle = [f"Note: {sentence}." for sentence in absent_interfaces(scene)]
+    if idle:
+        blocks.append("\n".join(idle))
     return "\n".join([_heading(scene), "\n\n".join(blocks)])
 
 
