@@ -42,10 +42,39 @@ def horizon_coordinate(phi, lx, lz):
     return HALF_PI
 
 
-def coordinates(direction, light):
-    """Row coordinate of a view direction, and its azimuth from that opposite to the light, in radians."""
-    x, y, z = direction
-    return math.atan2(math.hypot(x, y), z), math.atan2(y, -x)
+def coordinates(view, light):
+    """Row coordinates and azimuths of view directions.
+
+    Parameters
+    ----------
+    view : array_like, shape (..., 3)
+    light : ndarray, shape (3,)
+
+    Returns
+    -------
+    u, psi : ndarray, shape (...)
+        In radians; psi = pi - phi, the azimuth from that opposite to the light, in [-pi, pi].
+    """
+    x, y, z = np.moveaxis(np.asarray(view, float), -1, 0)
+    return np.arctan2(np.hypot(x, y), z), np.arctan2(y, -x)
+
+
+def directions(u, phi, light):
+    """View directions of points of the slice.
+
+    Parameters
+    ----------
+    u, phi : array_like
+        Row coordinates and azimuths in radians; they broadcast.
+    light : ndarray, shape (3,)
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Unit vectors, some below the horizon where the slice reaches there.
+    """
+    u, phi = np.broadcast_arrays(u, phi)
+    return np.stack([np.sin(u) * np.cos(phi), np.sin(u) * np.sin(phi), np.cos(u)], axis=-1)
 
 
 def tilt(u):

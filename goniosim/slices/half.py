@@ -69,10 +69,40 @@ def horizon_coordinate(phi, lx, lz):
     return math.sqrt(0.5 * math.atan2(lz, -lx * math.cos(phi)) * HALF_PI)
 
 
-def coordinates(direction, light):
-    """Row coordinate of a view direction, and its azimuth from that opposite to the light, in radians."""
-    x, y, z = (float(v + w) for v, w in zip(direction, light, strict=True))
-    return math.sqrt(math.atan2(math.hypot(x, y), z) * HALF_PI), math.atan2(y, -x)
+def coordinates(view, light):
+    """Row coordinates and azimuths of view directions.
+
+    Parameters
+    ----------
+    view : array_like, shape (..., 3)
+    light : ndarray, shape (3,)
+
+    Returns
+    -------
+    u, psi : ndarray, shape (...)
+        In radians; psi = pi - phi, the azimuth from that opposite to the light, in [-pi, pi].
+    """
+    x, y, z = np.moveaxis(np.asarray(view, float) + light, -1, 0)
+    return np.sqrt(np.arctan2(np.hypot(x, y), z) * HALF_PI), np.arctan2(y, -x)
+
+
+def directions(u, phi, light):
+    """View directions of points of the slice.
+
+    Parameters
+    ----------
+    u, phi : array_like
+        Row coordinates and azimuths in radians; they broadcast.
+    light : ndarray, shape (3,)
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Unit vectors, some below the horizon where the slice reaches there.
+    """
+    theta, phi = np.broadcast_arrays(tilt(np.asarray(u)), phi)
+    axis = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+    return 2.0 * (axis @ light)[..., None] * axis - light
 
 
 def tilt(u):

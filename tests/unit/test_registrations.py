@@ -69,7 +69,7 @@ def test_parametrizations_are_known_to_scenes():
 def test_a_parametrization_offers_what_the_choosers_and_the_integration_ask_for(parametrization):
     module = PARAMETRIZATIONS[parametrization][1]
     compiled = ("cells_of", "view_row", "view_direction", "horizon_azimuth", "horizon_coordinate")
-    for name in (*compiled, "coordinates", "tilt", "projected_row", "geometry"):
+    for name in (*compiled, "directions", "coordinates", "tilt", "projected_row", "geometry"):
         assert callable(getattr(module, name)), name
     assert importlib.import_module(f"goniosim.slices.{parametrization}") is module
 
@@ -91,10 +91,12 @@ def _centres(parametrization):
 def test_coordinates_of_a_parametrization_lead_back(parametrization):
     module = PARAMETRIZATIONS[parametrization][1]
     directions, _ = _centres(parametrization)
-    found = np.array([module.coordinates(direction[:3], LIGHT) for direction in directions])
+    found = np.stack(module.coordinates(directions[:, :3], LIGHT), axis=1)
     u = (np.arange(ROWS) + 0.5) * 0.5 * math.pi / ROWS
     phi = (np.arange(COLUMNS) + 0.5) * 2.0 * math.pi / COLUMNS
     lit = directions[:, 3] > 0.0
+    same = module.directions(u[:, None], phi, LIGHT).reshape(-1, 3)
+    assert np.allclose(same[lit], directions[lit, :3], atol=1e-12)
     assert np.allclose(found[lit, 0], np.repeat(u, COLUMNS)[lit], atol=1e-9)
     from_the_mirror = np.tile(np.abs(math.pi - phi), ROWS)
     assert np.allclose(np.abs(found[lit, 1]), from_the_mirror[lit], atol=1e-9)

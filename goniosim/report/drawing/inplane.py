@@ -8,7 +8,7 @@ takes to see something.
 
 import numpy as np
 
-from .view import elevation, index
+from .view import in_plane, index
 
 # Rows are joined until the relative standard error falls below this, or the patch gets this wide.
 NOISY = 0.25
@@ -37,11 +37,8 @@ def plane_of_incidence(cells, direction, theta_deg, slices, stderr):
         BSDF of the patch and its standard error.
     """
     sides = []
-    for azimuth, sign in ((0.0, -1.0), (180.0, 1.0)):
-        rows = _row_patches(cells, direction, azimuth, slices, stderr)
-        for tilt, f, sigma in _joined(rows, 2.0 if cells.parametrization == "half" else 1.0):
-            # In a half slice the mirror direction of the light, theta, about a normal tilted in the plane.
-            angle = theta_deg + 2.0 * sign * tilt if cells.parametrization == "half" else sign * tilt
+    for azimuth in (0.0, 180.0):
+        for angle, f, sigma in _joined(_row_patches(cells, direction, theta_deg, azimuth, slices, stderr)):
             if abs(angle) < 90.0:
                 sides.append((angle, f, sigma))
     sides.sort(key=lambda point: point[0])
@@ -56,19 +53,19 @@ def highest(f, sigma, sigmas):
     return float(np.max((f + sigmas * sigma)[clear], initial=0.0)) or float(f.max(initial=0.0))
 
 
-def _row_patches(cells, direction, azimuth, slices, stderr):
-    """Patches one row high, from the pole outwards: (lower, upper tilt, solid angle, f, sigma)."""
+def _row_patches(cells, direction, theta_deg, azimuth, slices, stderr):
+    """Patches one row high, from the pole outwards: (first, last angle, solid angle, f, sigma)."""
     n_columns = len(cells.column_edges) - 1
     middle = int(index(cells.column_edges, azimuth))
-    edges = elevation(cells, cells.row_edges)
-    for row, (low, high) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    tilts, angles = in_plane(cells, theta_deg, azimuth)
+    for row, (low, high) in enumerate(zip(tilts[:-1], tilts[1:], strict=True)):
         column_width = np.sin(np.radians(0.5 * (low + high))) * 360.0 / n_columns
         pairs = max(1, round(0.5 * (high - low) / column_width))
         width = min(2 * pairs, max(1, n_columns // 2))
         columns = (middle - width // 2 + np.arange(width)) % n_columns
         if cells.valid[direction, row, columns].all():
             size = cells.projected_solid_angle[direction, row, columns].sum()
-            yield low, high, size, *_mean(slices[:, row, columns], stderr[:, row, columns])
+            yield angles[row], angles[row + 1], size, *_mean(slices[:, row, columns], stderr[:, row, columns])
 
 
 def _mean(f, sigma):
@@ -84,29 +81,29 @@ def _mean(f, sigma):
     return f.mean(axis=-1), np.sqrt(np.maximum(variance - scatter, variance / f.shape[-1]))
 
 
-def _joined(patches, degrees_per_tilt):
-    """Join consecutive patches until each is seen well enough, or wide enough; yield (tilt, f, sigma)."""
+def _joined(patches):
+    """Join consecutive patches until each is seen well enough, or wide enough; yield (angle, f, sigma)."""
     group = []
     for patch in patches:
         if group and group[-1][1] != patch[0]:
             yield _join(group)
             group = []
         group.append(patch)
-        tilt, f, sigma = _join(group)
+        angle, f, sigma = _join(group)
         best = np.argmax(f)
         seen = f[best] > 0.0 and sigma[best] < NOISY * f[best]
-        if seen or degrees_per_tilt * (group[-1][1] - group[0][0]) >= WIDEST_DEG:
-            yield tilt, f, sigma
+        if seen or abs(group[-1][1] - group[0][0]) >= WIDEST_DEG:
+            yield angle, f, sigma
             group = []
     if group:
         yield _join(group)
 
 
 def _join(group):
-    lows, highs, sizes, f, sigma = zip(*group, strict=True)
+    firsts, lasts, sizes, f, sigma = zip(*group, strict=True)
     weights = np.array(sizes)[:, None] / sum(sizes)
     return (
-        0.5 * (lows[0] + highs[-1]),
+        0.5 * (firsts[0] + lasts[-1]),
         (weights * np.array(f)).sum(axis=0),
         np.sqrt((weights**2 * np.array(sigma) ** 2).sum(axis=0)),
     )

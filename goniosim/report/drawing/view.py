@@ -6,6 +6,8 @@ side, as they are in the file.
 
 import numpy as np
 
+from ...slices import PARAMETRIZATIONS
+
 OUTSIDE = -1
 INVALID = -2
 
@@ -28,15 +30,8 @@ def cell_numbers(cells, direction, theta_deg, view):
     ndarray of int64, shape (...)
         ``row * K + column``, `OUTSIDE` or `INVALID` (a cell that is not wholly above the horizon).
     """
-    axis = view
-    if cells.parametrization == "half":
-        axis = view + light_direction(theta_deg)
-        axis = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
-    coordinate = np.degrees(np.arctan2(np.hypot(axis[..., 0], axis[..., 1]), axis[..., 2]))
-    if cells.parametrization == "half":
-        # Rows are linear in u = sqrt(theta_h pi / 2).
-        coordinate = np.sqrt(90.0 * coordinate)
-    azimuth = np.degrees(np.arctan2(axis[..., 1], axis[..., 0])) % 360.0
+    u, psi = _parametrization(cells).coordinates(view, light_direction(theta_deg))
+    coordinate, azimuth = np.degrees(u), np.degrees(np.pi - psi) % 360.0
     row = index(cells.row_edges, coordinate)
     column = index(cells.column_edges, azimuth)
     number = row * (len(cells.column_edges) - 1) + column
@@ -84,13 +79,24 @@ def centre(cells, theta_deg, number):
         Unit vector; below the horizon for some cells of a half slice.
     """
     row, column = divmod(number, len(cells.column_edges) - 1)
-    tilt = np.radians(elevation(cells, 0.5 * (cells.row_edges[row] + cells.row_edges[row + 1])))
+    u = np.radians(0.5 * (cells.row_edges[row] + cells.row_edges[row + 1]))
     azimuth = np.radians(0.5 * (cells.column_edges[column] + cells.column_edges[column + 1]))
-    axis = np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
-    if cells.parametrization == "classic":
-        return axis
-    light = light_direction(theta_deg)
-    return 2.0 * (light @ axis) * axis - light
+    return _parametrization(cells).directions(u, azimuth, light_direction(theta_deg))
+
+
+def in_plane(cells, theta_deg, azimuth_deg):
+    """Where the edges of the rows cut the plane of incidence, on the side of an azimuth of 0 or 180 degrees.
+
+    Returns
+    -------
+    tilt : ndarray, shape (R + 1,)
+        From the pole of the parametrization, in degrees.
+    angle : ndarray, shape (R + 1,)
+        Signed angle from the normal in degrees: negative towards the light.
+    """
+    module, u = _parametrization(cells), np.radians(cells.row_edges)
+    x, _, z = module.directions(u, np.radians(azimuth_deg), light_direction(theta_deg)).T
+    return np.degrees(module.tilt(u)), np.degrees(np.arctan2(-x, z))
 
 
 def light_direction(theta_deg):
@@ -99,11 +105,10 @@ def light_direction(theta_deg):
     return np.array([np.sin(theta), 0.0, np.cos(theta)])
 
 
-def elevation(cells, row_coordinate):
-    """Angle theta_v or theta_h in degrees of a row coordinate in degrees."""
-    return row_coordinate**2 / 90.0 if cells.parametrization == "half" else row_coordinate
-
-
 def index(edges, values):
     """Number of the interval between ``edges`` that holds each of the ``values``."""
     return np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
+
+
+def _parametrization(cells):
+    return PARAMETRIZATIONS[cells.parametrization][1]
