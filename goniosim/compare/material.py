@@ -8,6 +8,7 @@ import numpy as np
 from ..models import MODELS, prepare
 from ..result import Component
 from ..scene import parse_scene
+from .counts import count
 from .grid import make_grid
 from .integrate import integrate, to_slice
 from .measures import Measures, measure, rmse
@@ -211,8 +212,9 @@ def _component(found, cells):
 
 def _compared(result, variant, component, parts):
     bsdf, stderr = reference(result, component)
+    counts = count(result, component)
     measures = [
-        measure(to_bsdf(sum(energies), result.cells), bsdf, stderr, result.cells)
+        measure(to_bsdf(sum(energies), result.cells), bsdf, stderr, result.cells, counts)
         for energies in zip(*((part.energy, part.finer, part.converged) for part in parts), strict=True)
     ]
     return Compared(variant, component, *measures, seconds=sum(part.seconds for part in parts))
