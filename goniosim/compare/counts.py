@@ -124,7 +124,7 @@ class Expected:
 
     @property
     def hidden(self):
-        """Squared error of three hits that went unseen in a cell of the mean size of those without a hit, shape (C,)."""
+        """Squared error of three unseen hits in a cell of the mean size of those without a hit, shape (C,)."""
         empty = (self._size > 0.0) & (self.hits == 0)
         if not empty.any():
             return np.zeros_like(self.per_hit)

@@ -13,7 +13,7 @@ from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 RAYS, SEEDS = 40_000, 24
 
-# Stacks in which every ray is fainter than a thousandth of what it started with, or which mix such rays with bright ones.
+# Stacks in which every ray that returns is fainter than a thousandth of what it started with.
 DARK = {
     "plastic, tau 6": ([dielectric(1.5), medium(6.0), lambert(0.5)], "reflection/internal"),
     "rough plastic, tau 6": ([dielectric(1.5, 0.2), medium(6.0), lambert(0.5)], "reflection/internal"),

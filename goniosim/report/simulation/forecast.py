@@ -162,8 +162,8 @@ def cost_text(made):
 def _event_cap(one):
     # Each work unit of the probe has less rays than one of a long run, which loses a smaller share.
     return (
-        f"  Warning: event cap: {one.name} traps light between interfaces; of the {text.count(one.probe_rays)} rays of the "
-        f"probe up to {100.0 * one.lost_event_cap:.2g} % were cut and lost; {cap_remedy(one.rays)}"
+        f"  Warning: event cap: {one.name} traps light between interfaces; of the {text.count(one.probe_rays)} rays of "
+        f"the probe up to {100.0 * one.lost_event_cap:.2g} % were cut and lost; {cap_remedy(one.rays)}"
     )
 
 
