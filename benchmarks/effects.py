@@ -11,6 +11,7 @@ repetitions counts.
 import argparse
 import threading
 
+from goniosim.engine.faint import faint_weights
 from goniosim.engine.plan import make_plan
 from goniosim.engine.unit import Tally, Workspace, unit_key
 from goniosim.scene import parse_scene
@@ -74,7 +75,7 @@ def main():
             }
         )
         plan = make_plan(scene)
-        workspaces[name] = (Workspace(plan), Tally(plan))
+        workspaces[name] = (Workspace(plan, faint_weights(plan)), Tally(plan))
     best, events, rays = measure(workspaces, int(options.rays), options.repeat)
     plain = next(iter(VARIANTS))
     print(f"{'scene':26}{'ns/ray':>9}{'ns/event':>10}{'relative':>10}")

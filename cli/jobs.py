@@ -94,6 +94,7 @@ def make_folder(folder):
 def run(jobs, progress, signals, verbose):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
     from goniosim.report.simulation.forecast import effects_text
+    from goniosim.report.simulation.losses import event_cap
     from goniosim.report.text import duration
     from goniosim.store import write_result
 
@@ -117,6 +118,8 @@ def run(jobs, progress, signals, verbose):
         if result.status == "partial":
             percent = 100.0 * result.rays.sum() / job.rays
             progress.note(f"stopped by {signals.name}: {job.path} holds {percent:.3g} % of the rays (partial)")
+        if warning := event_cap(result):
+            progress.note(f"{label}: {warning}")
         yield job, result
 
 

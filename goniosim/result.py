@@ -80,7 +80,8 @@ class Audit:
     ----------
     energy, stderr : dict of str to ndarray, shape (M, C)
         Keys are the names in `AUDIT_ENTRIES`, in that order. The standard
-        errors come from the scatter between independent work units.
+        errors come from the scatter between 64 or more independent parts of
+        the rays (four or more in a partial result).
     direct_integrated, direct_integrated_stderr : ndarray, shape (M, C)
         Energy of the direct reflection by integration over the cells, to be
         compared with the sampled ``reflected_direct``.
@@ -121,9 +122,10 @@ class Cost:
     seconds, cpu_seconds : ndarray, shape (P,)
         Wall-clock and processor time of tracing so far, without compilation.
     error : dict of str to ndarray, shape (P,)
-        Per sampled component: the root of the mean over directions and
-        channels of the integral of bsdf_stderr^2 cos(theta) over the valid
-        cells, in 1/sr^(1/2): the noise floor of the RMSE of Eq. 4, Bati et al. 2019.
+        Per sampled component, in 1/sr^(1/2): the mean over the channels of the
+        root of the mean over the directions of the integral of
+        bsdf_stderr^2 cos(theta) over the valid cells. This is the noise floor of
+        the RMSE of Eq. 4, Bati et al. 2019, as in the table of errors.
     """
 
     rays: np.ndarray

@@ -11,6 +11,7 @@ from ..result import Component, Result
 from ..scene import Scene, parse_scene
 from .cells import grid_of, to_bsdf, to_slice
 from .convergence import converge
+from .counts import count
 from .measures import Measures, measure, rmse
 from .variants import Variant, components_for, variants_for
 
@@ -217,8 +218,9 @@ def _component(found, cells):
 
 def _compared(result, variant, component, parts):
     bsdf, stderr = reference(result, component)
+    counts = count(result, component)
     measures = [
-        measure(to_bsdf(sum(energies), result.cells), bsdf, stderr, result.cells)
+        measure(to_bsdf(sum(energies), result.cells), bsdf, stderr, result.cells, counts)
         for energies in zip(*((part.energy, part.finer, part.converged) for part in parts), strict=True)
     ]
     return Compared(

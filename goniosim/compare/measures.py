@@ -10,15 +10,20 @@ w the projected solid angle of a cell, over the valid cells:
 The noise of a cell is independent of that of the others, so the variance of ``debiased`` is
 sum w^2 (4 delta^2 s^2 + 2 s^4), with delta the model's true error: exact for a Gaussian, and for
 hits of equal weight, which are Poissonian. It is estimated from d and s; where s enters it is that
-of the mirror-image cell, which has the same expectation but is not correlated with this one's d.
+of the mirror-image cell, which has the same expectation but is not correlated with this one's d. (A cell
+that holds Dirac light has no such twin.)
+Where hits are few or absent it is taken from the model, see `counts`.
 """
 
 from dataclasses import dataclass, fields
 
 import numpy as np
 
+from .counts import RULE_OF_THREE, Expected
+from .worst import worst_cells
+
 # A debiased squared error is told from noise if it exceeds so many standard errors of that of a true
-# model: one true model in 44 is called wrong, a few more where only a few cells count.
+# model: one true model in 44 is called wrong, one in 20 where only a few cells count.
 SIGNIFICANT = 2.0
 # Share of the norm of the reference below which an error is rounding: references are not more exact.
 ROUNDING = 1e-8
@@ -33,12 +38,20 @@ class Measures:
     squared, noise, variance, variance_if_true : ndarray
         See above; ``variance`` is that of ``squared - noise``, and ``variance_if_true`` what it
         would be with delta = 0. In 1/sr, 1/sr, 1/sr^2 and 1/sr^2.
+    unseen, unseen_squared : ndarray
+        Where no path hit the component: hits that a true model expects, and how much of ``squared`` is due
+        to them; 0 elsewhere.
+    hidden : ndarray
+        Squared error that unhit cells may hide, in 1/sr.
     norm : ndarray
         Integral of the squared reference, without its noise, in 1/sr.
     albedo_reference, albedo_stderr, albedo_model : ndarray
-        Energy in the valid cells, and the standard error of that of the reference.
+        Energy in the valid cells, and the standard error of that of the reference: half of what
+        the rule of three allows where there was no hit.
     worst_row, worst_column : ndarray of int
-        The cell that adds most to the debiased squared error.
+        The cell that adds most to the debiased squared error, see `worst`; -1 if none is significant.
+    worst_excess : ndarray
+        What it adds, in 1/sr.
     worst_difference, worst_stderr : ndarray
         Model minus reference there, and the standard error of the reference, in 1/sr.
     """
@@ -47,12 +60,16 @@ class Measures:
     noise: np.ndarray
     variance: np.ndarray
     variance_if_true: np.ndarray
+    unseen: np.ndarray
+    unseen_squared: np.ndarray
+    hidden: np.ndarray
     norm: np.ndarray
     albedo_reference: np.ndarray
     albedo_stderr: np.ndarray
     albedo_model: np.ndarray
     worst_row: np.ndarray
     worst_column: np.ndarray
+    worst_excess: np.ndarray
     worst_difference: np.ndarray
     worst_stderr: np.ndarray
 
@@ -85,7 +102,7 @@ class Error:
     significant: bool
 
 
-def measure(model, reference, stderr, cells):
+def measure(model, reference, stderr, cells, counts=None):
     """Compare slices.
 
     Parameters
@@ -93,43 +110,65 @@ def measure(model, reference, stderr, cells):
     model, reference, stderr : ndarray, shape (M, C, R, K)
         BSDF in 1/sr, and the standard error of the reference.
     cells : goniosim.result.Cells
+    counts : goniosim.compare.counts.Counts, optional
+        None for a reference that is not sampled.
 
     Returns
     -------
     Measures
     """
-    rows = [
-        _one_direction(*slices, cells.projected_solid_angle[m] * cells.valid[m])
-        for m, slices in enumerate(zip(model, reference, stderr, strict=True))
-    ]
+    looked_at = max(int(cells.valid.sum()) * model.shape[1], 1)
+    rows = []
+    for m, slices in enumerate(zip(model, reference, stderr, strict=True)):
+        size = cells.projected_solid_angle[m] * cells.valid[m]
+        expected = None
+        if counts is not None:
+            expected = Expected(*slices, size, counts.hits[m], counts.rays[m], counts.integrated[m])
+        rows.append(_one_direction(*slices, size, expected, looked_at))
     names = [field.name for field in fields(Measures)]
     return Measures(**{name: np.stack(values) for name, values in zip(names, zip(*rows, strict=True), strict=True)})
 
 
-def _one_direction(model, reference, stderr, size):
+def _one_direction(model, reference, stderr, size, expected, looked_at):
     """Entries of `Measures` for slices (C, R, K); ``size`` is 0 in cells that do not count."""
     d = model - reference
     d2, s2 = d * d, stderr * stderr
     other_s2 = s2[..., ::-1]
+    if expected is not None:
+        other_s2 = np.where(expected.lonely, s2, other_s2)
     squared, noise = _total(size * d2), _total(size * s2)
-    if_true = _total(2.0 * size**2 * s2 * other_s2)
+    from_hits = 2.0 * size**2 * s2 * other_s2
+    if_true, few = _total(from_hits), np.zeros(len(d))
+    variance = _total(4.0 * size**2 * d2 * other_s2) - if_true
+    norm = np.maximum(_total(size * (reference**2 - s2)), 0.0)
+    albedo_stderr = np.sqrt(_total(size**2 * s2))
+    unseen, unseen_squared, hidden = np.zeros((3, len(d)))
+    if expected is not None:
+        hidden = expected.hidden
+        if expected.unseen:
+            unseen, unseen_squared = _total(expected.n), _total(size * d2 * (d > 0.0))
+            albedo_stderr = np.maximum(albedo_stderr, 0.5 * RULE_OF_THREE * expected.per_hit)
+        else:
+            if_true, few = expected.variance_if_true(from_hits)
     # By chance the estimate may fall below what even a true model has; far below it is no estimate.
-    variance = np.maximum(_total(4.0 * size**2 * d2 * other_s2) - if_true, 0.25 * if_true)
-    columns = d.shape[-1]
-    worst = np.argmax((size * (d2 - s2)).reshape(len(d), -1), axis=1)
+    variance = np.maximum(variance, few + 0.25 * (if_true - few))
+    row, column, excess = worst_cells(d, s2, size, expected, looked_at, ROUNDING**2 * norm)
     channel = np.arange(len(d))
-    row, column = np.divmod(worst, columns)
     return (
         squared,
         noise,
         variance,
         if_true,
-        np.maximum(_total(size * (reference**2 - s2)), 0.0),
+        unseen,
+        unseen_squared,
+        hidden,
+        norm,
         _total(size * reference),
-        np.sqrt(_total(size**2 * s2)),
+        albedo_stderr,
         _total(size * model),
         row,
         column,
+        excess,
         d[channel, row, column],
         stderr[channel, row, column],
     )
@@ -158,24 +197,32 @@ def rmse(measures, direction=None, channel=None):
     pick = slice(None) if direction is None else slice(direction, direction + 1)
     squared, noise = measures.squared[pick].mean(axis=0), measures.noise[pick].mean(axis=0)
     variance, if_true = measures.variance[pick], measures.variance_if_true[pick]
+    explained = _explained(measures.unseen[pick], measures.unseen_squared[pick])
     sigma = np.sqrt(variance.sum(axis=0)) / len(variance)
-    sigma_if_true = np.sqrt(if_true.sum(axis=0)) / len(if_true)
+    limit = SIGNIFICANT * np.sqrt(if_true.sum(axis=0)) / len(if_true) + explained
+    hidden = measures.hidden[pick].max(axis=0) / len(variance)
     norm = measures.norm[pick].mean(axis=0)
     if channel is not None:
         squared, noise, norm = squared[[channel]], noise[[channel]], norm[[channel]]
-        sigma, sigma_if_true = sigma[[channel]], sigma_if_true[[channel]]
+        sigma, limit, hidden, explained = sigma[[channel]], limit[[channel]], hidden[[channel]], explained[[channel]]
     debiased = squared - noise
     error = np.sqrt(np.maximum(debiased, 0.0))
-    limit = SIGNIFICANT * sigma_if_true.mean() + ROUNDING**2 * norm.mean()
-    upper = np.sqrt(np.maximum(debiased, 0.0) + SIGNIFICANT * sigma)
+    upper = np.sqrt(np.maximum(debiased, 0.0) + SIGNIFICANT * sigma + hidden)
     return Error(
         rmse=float(error.mean()),
-        stderr=float(_stderr(debiased, sigma).mean()),
+        stderr=float(_stderr(debiased, sigma + explained / SIGNIFICANT).mean()),
         upper=float(upper.mean()),
         raw=float(np.sqrt(squared).mean()),
         noise_floor=float(np.sqrt(noise).mean()),
-        significant=bool(debiased.mean() > limit),
+        significant=bool(debiased.mean() > (limit + ROUNDING**2 * norm).mean() * (1.0 + ROUNDING)),
     )
+
+
+def _explained(unseen, unseen_squared):
+    """How much of the mean squared error (C,) is explained by what went unseen, see `counts`; arguments (M, C)."""
+    expected = unseen.sum(axis=0)
+    share = RULE_OF_THREE / np.maximum(expected, RULE_OF_THREE)
+    return share * (2.0 - share) * unseen_squared.mean(axis=0)
 
 
 def _stderr(squared, sigma):

@@ -13,7 +13,10 @@ COLUMNS = {
     "rmse": ("sr-0.5", "error of the model, the noise of the reference taken out"),
     "rmse_stderr": ("sr-0.5", "standard error of rmse"),
     "rmse_upper": ("sr-0.5", "the error of the model lies below with 97.7 % confidence"),
-    "below_noise": ("", "1: the error is not told from noise at two standard errors, and rmse means nothing"),
+    "below_noise": (
+        "",
+        "1: noise at two standard errors, or light that went unseen (3/rays), explains the error: rmse means nothing",
+    ),
     "rmse_eq4": ("sr-0.5", "Eq. 4 as it stands, noise included"),
     "noise_floor": ("sr-0.5", "Eq. 4 of a perfect model: the noise of the reference"),
     "rmse_relative": ("1", "rmse over reference_norm; empty in the dark"),
@@ -23,10 +26,13 @@ COLUMNS = {
     "converged": ("", "0: sub-cells change the RMSE by more than 2 %, see rmse_converged"),
     "integration": ("", "what rmse_converged took: fixed (nothing was suspicious), adaptive, exhausted (given up)"),
     "albedo_reference": ("1", "energy of the reference in the valid cells"),
-    "albedo_reference_stderr": ("1", "standard error of albedo_reference"),
+    "albedo_reference_stderr": ("1", "standard error of albedo_reference; 1.5/rays where no path arrived"),
     "albedo_model": ("1", "energy of the model in the valid cells"),
     "albedo_error": ("1", "albedo_model minus albedo_reference"),
-    "worst_theta_deg": ("degree", "incident direction of the cell that adds most to the error"),
+    "worst_theta_deg": (
+        "degree",
+        "incident direction of the cell that adds most to the error, of those that are no noise; empty: there is none",
+    ),
     "worst_channel": ("", "its channel"),
     "worst_row": ("1", "its row"),
     "worst_column": ("1", "its column"),
@@ -70,7 +76,6 @@ def material_rows(comparison):
 def _row(comparison, found, direction, channel):
     result, measures = comparison.result, found.measures
     error = rmse(measures, direction, channel)
-    m, c = _worst(measures, direction, channel)
     directions = slice(None) if direction is None else slice(direction, direction + 1)
     channels = slice(None) if channel is None else slice(channel, channel + 1)
     reference = measures.albedo_reference[directions, channels]
@@ -101,12 +106,7 @@ def _row(comparison, found, direction, channel):
         "albedo_reference_stderr": float(((stderr**2).sum(axis=0) ** 0.5 / len(stderr)).mean()),
         "albedo_model": float(model.mean()),
         "albedo_error": float((model - reference).mean()),
-        "worst_theta_deg": float(result.theta_deg[m]),
-        "worst_channel": result.channels[c],
-        "worst_row": int(measures.worst_row[m, c]),
-        "worst_column": int(measures.worst_column[m, c]),
-        "worst_difference": float(measures.worst_difference[m, c]),
-        "worst_stderr": float(measures.worst_stderr[m, c]),
+        **_worst(result, measures, direction, channel),
         "subcells": comparison.subcells,
         "model_seconds": found.seconds,
         "simulation_seconds": comparison.simulation_seconds,
@@ -115,9 +115,19 @@ def _row(comparison, found, direction, channel):
     }
 
 
-def _worst(measures, direction, channel):
-    """Direction and channel whose worst cell is shown: that of the largest debiased error."""
-    debiased = measures.squared - measures.noise
-    ms = range(len(debiased)) if direction is None else [direction]
-    cs = range(debiased.shape[1]) if channel is None else [channel]
-    return max(((m, c) for m in ms for c in cs), key=lambda place: debiased[place])
+def _worst(result, measures, direction, channel):
+    """The columns of the worst cell: of all directions and channels that which adds most; None if there is none."""
+    excess = measures.worst_excess
+    ms = range(len(excess)) if direction is None else [direction]
+    cs = range(excess.shape[1]) if channel is None else [channel]
+    m, c = max(((m, c) for m in ms for c in cs), key=lambda place: excess[place])
+    if excess[m, c] <= 0.0:
+        return dict.fromkeys(name for name in COLUMNS if name.startswith("worst_"))
+    return {
+        "worst_theta_deg": float(result.theta_deg[m]),
+        "worst_channel": result.channels[c],
+        "worst_row": int(measures.worst_row[m, c]),
+        "worst_column": int(measures.worst_column[m, c]),
+        "worst_difference": float(measures.worst_difference[m, c]),
+        "worst_stderr": float(measures.worst_stderr[m, c]),
+    }

@@ -4,7 +4,6 @@ import numpy as np
 
 from ..result import AUDIT_ENTRIES, Audit, Cells, Component
 from .layout import DOWN, UP
-from .stages import SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 
 COMPONENT_OF = {UP: "reflection/internal", DOWN: "transmission"}
 
@@ -89,8 +88,7 @@ def components(plan, tallies, rays, direct):
     -------
     dict of str to goniosim.result.Component
     """
-    is_delta = int(plan.kinds[0]) in (SMOOTH_DIELECTRIC, SMOOTH_CONDUCTOR)
-    found = {"reflection/direct": _assemble(plan, direct, None, is_delta)}
+    found = {"reflection/direct": _assemble(plan, direct, None, bool(plan.mirrors[0]))}
     for side, name in COMPONENT_OF.items():
         first, count, lowest = (int(value) for value in plan.slots[side])
         if count == 0:
@@ -109,30 +107,30 @@ def noise(plan, tallies, rays, side):
     first, count, _ = (int(value) for value in plan.slots[side])
     # A channel that stands for several counts as often.
     weights = np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
-    total = 0.0
+    total = np.zeros(plan.n_distinct)
     for tally, n, geometry in zip(tallies, rays, plan.geometry, strict=True):
         stderr = mean_and_error(*moments(tally.histogram, plan, first, count)[:2], n)[1]
         variance = to_bsdf(stderr, geometry) ** 2 * geometry.projected_solid_angle
-        total += float(variance.sum(axis=(1, 2)) @ weights)
-    return float(np.sqrt(total / len(plan.theta_deg)))
+        total += variance.sum(axis=(1, 2))
+    return float(np.sqrt(total / len(plan.theta_deg)) @ weights)
 
 
-def audit(plan, ledgers, unit_rays, direct):
-    """Energy balance with standard errors from the scatter between work units.
+def audit(plan, ledgers, part_rays, direct):
+    """Energy balance with standard errors from the scatter between parts of work units.
 
     Parameters
     ----------
     plan : Plan
     ledgers : list of list of ndarray, shape (N_LEDGER, distinct channels)
-        Of every finished work unit of every direction.
-    unit_rays : list of list of int
-        Rays of those units.
+        Of every part of the finished work units of every direction.
+    part_rays : list of list of int
+        Rays of those parts.
     direct : goniosim.result.Component
         The integrated direct reflection.
     """
     mean = np.zeros((len(AUDIT_ENTRIES), len(ledgers), plan.n_distinct))
     stderr = np.zeros_like(mean)
-    for m, (parts, sizes) in enumerate(zip(ledgers, unit_rays, strict=True)):
+    for m, (parts, sizes) in enumerate(zip(ledgers, part_rays, strict=True)):
         mean[:, m], stderr[:, m] = _balance(parts, sizes, plan.n_distinct)
     return Audit(
         energy={name: mean[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
@@ -149,9 +147,5 @@ def _balance(parts, sizes, n_distinct):
     parts = np.stack(parts)
     rays = sizes.sum()
     mean = parts.sum(axis=0) / rays
-    units = len(parts)
-    if units == 1:
-        # No scatter to look at: the largest error that energies between 0 and 1 can have.
-        return mean, np.sqrt(np.clip(mean * (1.0 - mean), 0.0, None) / rays)
     deviations = ((parts - sizes * mean) ** 2).sum(axis=0)
-    return mean, np.sqrt(deviations * units / (units - 1.0)) / rays
+    return mean, np.sqrt(deviations * len(parts) / (len(parts) - 1.0)) / rays

@@ -5,7 +5,11 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..cores import available_cores
+from .faint import faint_weights
+from .layout import LOST_CAP
 from .plan import Plan, make_plan
 from .unit import Tally, Workspace, unit_key
 
@@ -37,11 +41,17 @@ class Probe:
         Mean number of interfaces a ray meets.
     compile_seconds : float
         Time to compile the kernels or to load them from the cache.
+    rays : int
+        Rays traced, all directions together.
+    lost_event_cap : float
+        Share of the flux that was lost at the event cap, the largest of all directions and channels.
     """
 
     rays_per_second: float
     events_per_ray: float
     compile_seconds: float
+    rays: int
+    lost_event_cap: float
 
 
 def probe(scene, seconds=1.0, threads=None):
@@ -50,23 +60,35 @@ def probe(scene, seconds=1.0, threads=None):
     threads = threads or scene.simulation.threads or available_cores()
     compile_seconds = warm_up(plan)
     directions = len(plan.theta_deg)
-    spaces = [(Workspace(plan), Tally(plan)) for _ in range(threads)]
+    faint = faint_weights(plan)
+    spaces = [(Workspace(plan, faint), Tally(plan)) for _ in range(threads)]
     start = time.perf_counter()
 
     def work(number):
         workspace, tally = spaces[number]
-        rays = events = 0
+        rays = np.zeros(directions, np.int64)
+        lost = np.zeros((directions, plan.n_distinct))
+        events = 0
         unit = number
-        while rays == 0 or time.perf_counter() - start < seconds:
-            key = unit_key(scene.simulation.seed, unit % directions, unit)
-            report = workspace.run(unit % directions, _RAYS_PER_UNIT, key, tally, threading.Event())
-            rays += report.rays
+        while events == 0 or time.perf_counter() - start < seconds:
+            direction = unit % directions
+            key = unit_key(scene.simulation.seed, direction, unit)
+            report = workspace.run(direction, _RAYS_PER_UNIT, key, tally, threading.Event())
+            rays[direction] += report.rays
+            lost[direction] += tally.ledgers[:, LOST_CAP].sum(axis=0)
+            tally.ledgers.fill(0.0)
             events += report.events
             unit += threads
-        return rays, events
+        return rays, events, lost
 
     with ThreadPoolExecutor(threads) as pool:
         totals = list(pool.map(work, range(threads)))
     elapsed = time.perf_counter() - start
-    rays = sum(total[0] for total in totals)
-    return Probe(rays / elapsed, sum(total[1] for total in totals) / rays, compile_seconds)
+    rays, events, lost = (sum(total[i] for total in totals) for i in range(3))
+    return Probe(
+        rays_per_second=rays.sum() / elapsed,
+        events_per_ray=events / rays.sum(),
+        compile_seconds=compile_seconds,
+        rays=int(rays.sum()),
+        lost_event_cap=float((lost / np.maximum(rays, 1)[:, None]).max()),
+    )

@@ -15,6 +15,7 @@ from ..result import Cost, Result
 from ..scene import CHANNELS, effects, parse_scene
 from . import estimate
 from .direct import direct_reflection
+from .faint import faint_weights
 from .layout import DOWN, UP
 from .plan import make_plan
 from .probe import warm_up
@@ -76,7 +77,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
         channels=list(CHANNELS),
         cells=estimate.cells(plan),
         components=found,
-        audit=estimate.audit(plan, run.ledgers, run.unit_rays, found["reflection/direct"]),
+        audit=estimate.audit(plan, run.ledgers, run.part_rays, found["reflection/direct"]),
         cost=run.cost(),
         effects={effect.name: effect.active for effect in effects(scene)},
         provenance=provenance(threads),
@@ -105,19 +106,21 @@ class _Run:
         directions = len(self.plan.theta_deg)
         self.schedule = Schedule(directions, self.rays_per_direction)
         self.tallies = [Tally(self.plan) for _ in range(directions)]
+        self.units = [0] * directions
         self.ledgers = [[] for _ in range(directions)]
-        self.unit_rays = [[] for _ in range(directions)]
+        self.part_rays = [[] for _ in range(directions)]
 
     @property
     def rays(self):
-        return [sum(sizes) for sizes in self.unit_rays]
+        return [sum(sizes) for sizes in self.part_rays]
 
     @property
     def finished(self):
-        return all(len(parts) == self.schedule.rounds for parts in self.ledgers)
+        return all(units == self.schedule.rounds for units in self.units)
 
     def trace(self, progress, stop):
         """Run all work units, summing their tallies in the order of the schedule."""
+        faint = faint_weights(self.plan)
         start = time.perf_counter()
         in_flight = self.threads + 2
         spare = [Tally(self.plan) for _ in range(in_flight)]
@@ -133,7 +136,7 @@ class _Run:
             if stop.is_set():
                 return None
             if not hasattr(local, "workspace"):
-                local.workspace = Workspace(self.plan)
+                local.workspace = Workspace(self.plan, faint)
             key = unit_key(self.seed, direction, unit)
             return local.workspace.run(direction, rays, key, tally, stop)
 
@@ -170,11 +173,12 @@ class _Run:
     def _reduce(self, number, report, tally):
         direction, unit, _ = self.schedule[number]
         # After a stop, units of a direction count only as far as none is missing before them.
-        if report is None or unit != len(self.ledgers[direction]):
+        if report is None or unit != self.units[direction]:
             return
+        self.units[direction] += 1
         self.tallies[direction].histogram += tally.histogram
-        self.ledgers[direction].append(tally.ledger.copy())
-        self.unit_rays[direction].append(report.rays)
+        self.ledgers[direction].extend(tally.ledgers.copy())
+        self.part_rays[direction].extend(report.part_rays)
         self.cpu_seconds += report.cpu_seconds
         self.events += report.events
 

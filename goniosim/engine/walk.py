@@ -43,13 +43,15 @@ MAX_ROUNDS = 10_000
 
 
 @kernel
-def walk(stack, light, unit_key, budget, space, ledger, cells):
+def walk(stack, scales, light, unit_key, budget, space, ledger, cells):
     """Advance one work unit by about ``budget`` events; returns whether it is finished.
 
     Parameters
     ----------
     stack : tuple
         Interface and medium tables of `plan.Plan.tables`.
+    scales : ndarray, shape (queues, channels)
+        Reciprocals of the weights below which a ray is faint, see `faint.faint_weights`.
     light : ndarray, shape (3,)
         Unit vector to the light.
     unit_key : uint64
@@ -95,7 +97,7 @@ def walk(stack, light, unit_key, budget, space, ledger, cells):
             medium = q // 2 - 1 if q % 2 == ABOVE else q // 2
             if absorbs[medium]:
                 absorb(work, n, taus[medium], scratch[BOOST], ledger)
-            gambled = roulette(work, n, channels, scratch[BOOST], key, ledger)
+            gambled = roulette(work, n, scales[q], scratch[BOOST], key, ledger)
 
         k = q // 2
         side = q % 2

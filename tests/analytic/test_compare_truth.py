@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import goniosim
-from goniosim.compare.measures import rmse
+from goniosim.compare.counts import count
+from goniosim.compare.measures import measure, rmse
 from goniosim.compare.rows import material_rows
 from goniosim.integration import adaptive
-from reference.closed_forms import fresnel_dielectric, refracted_cosine
+from reference.cell_integrals import integrate_cells
+from reference.closed_forms import fresnel_dielectric, plastic_density, refracted_cosine
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 
@@ -138,3 +140,25 @@ def test_an_error_at_the_level_of_rounding_is_none():
     for found in comparison.compared:
         assert not rmse(found.measures).significant and found.is_converged()
         assert rmse(found.measures).raw < 1e-12
+
+
+@pytest.mark.parametrize(("theta_deg", "rays"), [(60.0, 100), (60.0, 1_000), (89.0, 100), (89.9, 400)])
+def test_the_exact_plastic_is_rarely_told_from_few_rays(theta_deg, rays):
+    """Simulations with some to 500 hits in 1800 cells, against the closed form: 1 in 20 at most says that it is wrong.
+
+    100 seeds, 4 sigma above 5 %: false-alarm rate 3e-5 each. Without the limits on what goes unseen it was 23 % with
+    100 rays at 60 degrees. A base of twice the reflectance is told from it with 1000 rays in all of the runs.
+    """
+    scene = make_scene([dielectric(1.5), medium(0.2), lambert(0.5)], theta_deg, rows=30, columns=60)
+    exact = integrate_cells(plastic_density(1.5, 0.5, 0.2), theta_deg, 30, 60)
+    wrong, caught = [], []
+    for seed in range(1, 101):
+        result = goniosim.simulate(scene, rays=rays, seed=seed, threads=1)
+        part = result.components["reflection/internal"]
+        model = np.broadcast_to(exact / result.cells.projected_solid_angle[0], part.bsdf.shape)
+        counts = count(result, "reflection/internal")
+        for factor, significant in ((1.0, wrong), (2.0, caught)):
+            found = measure(factor * model, part.bsdf, part.bsdf_stderr, result.cells, counts)
+            significant.append(rmse(found).significant)
+    assert np.mean(wrong) < 0.05 + 4.0 * (0.05 / 100) ** 0.5
+    assert rays < 1_000 or np.mean(caught) > 0.9

@@ -42,6 +42,42 @@ def test_a_wrong_override_is_3(goniosim, folder):
     assert not list(folder.glob("*.h5"))
 
 
+TRAP = """\
+study:
+  name: traps
+  cross:
+    below: [10.0, 1.5]
+  material:
+    name: index-${below}
+    layers:
+      - interface: {type: dielectric, eta: 0.1}
+      - interface: {type: dielectric, eta: "${below}"}
+      - interface: {type: lambert, rho: 1.0}
+incident: {theta_deg: [0]}
+slice: {rows: 3, columns: 4}
+simulation: {rays: 1e3}
+"""
+
+
+def test_light_lost_at_the_event_cap_is_said_where_it_is_lost(goniosim, folder):
+    """Index 10 below 0.1 lets hardly a ray out again; index 1.5 does."""
+    (folder / "trap.yaml").write_text(TRAP)
+    code, _, err = goniosim("simulate", "trap.yaml")
+    (line,) = [line for line in err.splitlines() if "event cap" in line]
+    assert code == 0 and "index-10.0" in line
+    assert goniosim("simulate", "trap.yaml", "-q", "--seed", "2") == (0, "", "")
+    said = [
+        line
+        for name in ("10.0", "1.5")
+        for line in goniosim("info", f"traps/index-{name}.h5")[1].splitlines()
+        if "event cap:" in line
+    ]
+    assert len(said) == 1 and "too dark" in said[0]
+    code, out, _ = goniosim("check", "trap.yaml")
+    (line,) = [line for line in out.splitlines() if "event cap" in line]
+    assert code == 0 and "index-10.0" in line and "rays of the probe" in line
+
+
 def test_quiet_prints_nothing(goniosim, folder):
     assert goniosim("simulate", "scene.yaml", "-q", "--rays", "1e3") == (0, "", "")
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from goniosim.engine import simulate
 from reference.cell_integrals import integrate_cells
 from reference.checks import ENOUGH_HITS, many_seeds
 from reference.closed_forms import plastic_density, reflection_density
-from reference.scenes import conductor, dielectric, lambert, medium
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 SEEDS = 100
 RAYS = 300_000
@@ -61,3 +62,17 @@ def test_error_bars_of_single_runs(component):
     assert z[:, 0].size > 10_000
     for channel in range(3):
         assert np.std(z[:, channel]) == pytest.approx(1.0, abs=0.05)
+
+
+def test_error_bars_of_the_audit():
+    """They come from 64 parts of the rays: as wide as the scatter, and themselves uncertain by 1/sqrt(2 63) = 9 %.
+
+    100 seeds: the scatter of a standard deviation is 7 % of it; 4.5 sigma each, false-alarm rate 1e-5.
+    """
+    scene = make_scene(SLAB, 30, rows=2, columns=2)
+    audits = [simulate(scene, rays=20_000, seed=seed, threads=1).audit for seed in range(1, 101)]
+    for entry in ("transmitted", "absorbed_media"):
+        energy, stderr = (np.array([getattr(a, part)[entry][0, 0] for a in audits]) for part in ("energy", "stderr"))
+        bar = np.sqrt((stderr**2).mean())
+        assert energy.std(ddof=1) == pytest.approx(bar, rel=4.5 * 0.07)
+        assert stderr.std(ddof=1) == pytest.approx(bar / np.sqrt(2.0 * 63.0), rel=4.5 * 0.07)

@@ -6,6 +6,7 @@ The references have Poissonian hits, down to less than one per cell, as the simu
 import numpy as np
 import pytest
 
+from goniosim.compare.counts import Counts
 from goniosim.compare.measures import measure, rmse
 from goniosim.result import Cells
 
@@ -113,3 +114,137 @@ def test_the_worst_cell_is_named():
     found = measure(model, reference, reference + 0.1, make_cells(1))
     assert (found.worst_row[0, 0], found.worst_column[0, 0]) == (3, 5)
     assert (found.worst_difference[0, 0], found.worst_stderr[0, 0]) == (-2.0, 0.1)
+
+
+# --- few hits, and none ---
+
+
+RAYS = 1000
+
+
+def lobe():
+    """Energies of a bright lobe on a dark ground, shape (ROWS, COLUMNS), that sum to 1; mirror-symmetric."""
+    row, column = np.arange(ROWS)[:, None], np.arange(COLUMNS)
+    size = make_cells(1).projected_solid_angle[0]
+    energy = size * (np.exp(-(((row - 4) / 1.2) ** 2) - ((column - 5.5) / 1.2) ** 2) + 0.003)
+    return energy / energy.sum()
+
+
+def count_paths(energy, runs, seed, weight=1.0):
+    """Runs of `RAYS` paths of a weight: BSDF, standard error, and counts; ``energy`` per cell of the reference."""
+    cells = make_cells(runs)
+    hits = np.random.default_rng(seed).poisson(energy * RAYS / weight, (runs, ROWS, COLUMNS))
+    size = cells.projected_solid_angle[:, None]
+    bsdf, stderr = (values[:, None] * weight / RAYS / size for values in (hits, np.sqrt(hits)))
+    return cells, bsdf, stderr, Counts(hits, np.full(runs, RAYS), np.zeros_like(bsdf))
+
+
+def compared(model_energy, cells, bsdf, stderr, counts):
+    model = np.broadcast_to(model_energy / cells.projected_solid_angle[0], bsdf.shape)
+    return measure(model, bsdf, stderr, cells, counts)
+
+
+@pytest.mark.parametrize("weight", [1.0, 0.01])
+@pytest.mark.parametrize("hits", [0.3, 1, 2.5, 5, 20, 100, 3000])
+def test_the_true_model_is_rarely_told_from_few_hits(hits, weight):
+    """At most one true model in 20 is called wrong, whether three paths in ten runs hit anything or 3000 each.
+
+    1500 runs; 4 sigma above 5 %: false-alarm rate 3e-5 each. Without the limits on what goes unseen it
+    was 79 % at 0.3 hits, 30 % at 5 and 8 % at 20.
+    """
+    truth = hits * weight / RAYS * lobe()
+    found = compared(truth, *count_paths(truth, 1500, seed=17, weight=weight))
+    wrong = np.mean([rmse(found, m).significant for m in range(1500)])
+    assert wrong < 0.05 + 4.0 * (0.05 / 1500) ** 0.5
+
+
+@pytest.mark.parametrize(("hits", "factor"), [(100, 2.0), (100, 0.0), (3000, 1.2), (3000, 0.8)])
+def test_a_wrong_model_is_caught_with_few_hits_and_with_many(hits, factor):
+    """In at least 95 of 100 runs; all four were caught in each of 4000."""
+    truth = hits / RAYS * lobe()
+    found = compared(factor * truth, *count_paths(truth, 100, seed=3))
+    assert np.mean([rmse(found, m).significant for m in range(100)]) >= 0.95
+
+
+@pytest.mark.parametrize(
+    ("hits", "confidence"), [(0.3, 0.977), (2.5, 0.977), (10, 0.977), (20, 0.94), (100, 0.94), (3000, 0.97)]
+)
+@pytest.mark.parametrize("factor", [0.0, 1.0, 2.0])
+def test_the_error_lies_below_its_upper_limit(hits, confidence, factor):
+    """In 97.7 % of the cases with many hits, in somewhat less with some; 400 runs, less 4 sigma.
+
+    The estimated variance is low where the estimated error is. Without what goes unseen it was 1 % at 0.3
+    hits and a model that sees nothing, 38 % at 2.5 and 80 % at 10.
+    """
+    truth = hits / RAYS * lobe()
+    cells, *measured = count_paths(truth, 400, seed=23)
+    found = compared(factor * truth, cells, *measured)
+    exact = float((((factor - 1.0) * truth) ** 2 / cells.projected_solid_angle[0]).sum()) ** 0.5
+    below = np.mean([exact <= rmse(found, m).upper for m in range(400)])
+    assert below > confidence - 4.0 * (confidence * (1.0 - confidence) / 400) ** 0.5
+
+
+@pytest.mark.parametrize(("expected", "significant"), [(2.99, False), (3.01, True)])
+def test_without_any_hit_the_rule_of_three_decides(expected, significant):
+    nothing = count_paths(np.zeros((ROWS, COLUMNS)), 2, seed=1)
+    found = compared(expected / RAYS * lobe(), *nothing)
+    assert rmse(found, 0).significant == significant
+    # Both directions together had twice as many rays.
+    assert rmse(found).significant
+    assert not rmse(compared(0.5 * 2.99 / RAYS * lobe(), *nothing)).significant
+    assert rmse(found, 0).upper > rmse(found, 0).rmse > 0.0
+
+
+def test_one_hit_does_not_excuse_a_model_that_expects_a_hundred():
+    cells, bsdf, stderr, counts = count_paths(np.zeros((ROWS, COLUMNS)), 1, seed=1)
+    counts.hits[0, 2, 3] = 1
+    size = cells.projected_solid_angle[0, 2, 3]
+    bsdf[0, 0, 2, 3] = stderr[0, 0, 2, 3] = 1.0 / RAYS / size
+    flat = cells.projected_solid_angle[0] / np.pi
+    assert rmse(compared(100.0 / RAYS * flat, cells, bsdf, stderr, counts)).significant
+    assert not rmse(compared(2.0 / RAYS * flat, cells, bsdf, stderr, counts)).significant
+
+
+def test_what_goes_unseen_excuses_no_error_of_what_is_integrated():
+    """A model that falls short of what is integrated is wrong; one that exceeds it may not be."""
+    cells, nothing, stderr, counts = count_paths(np.zeros((ROWS, COLUMNS)), 1, seed=1)
+    integrated = np.broadcast_to(lobe() / cells.projected_solid_angle[0], nothing.shape)
+    counts = Counts(counts.hits, counts.rays, integrated)
+    error = 1.0 / RAYS * lobe()
+    assert not rmse(compared(lobe() + error, cells, integrated, stderr, counts)).significant
+    assert rmse(compared(lobe() - error, cells, integrated, stderr, counts)).significant
+
+
+def test_the_albedo_of_what_nothing_hit_has_an_error_bar():
+    found = compared(lobe(), *count_paths(np.zeros((ROWS, COLUMNS)), 1, seed=1))
+    assert found.albedo_stderr[0, 0] == pytest.approx(1.5 / RAYS)
+
+
+@pytest.mark.parametrize("hits", [5, 100, 3000])
+def test_no_cell_of_the_true_model_is_called_the_worst(hits):
+    """In at most one comparison of 20, however many cells are looked at: 600 runs, 4 sigma."""
+    truth = hits / RAYS * lobe()
+    cells, bsdf, stderr, counts = count_paths(truth, 600, seed=29)
+    named = []
+    for m in range(600):
+        one = Counts(counts.hits[[m]], counts.rays[[m]], counts.integrated[[m]])
+        named.append(compared(truth, make_cells(1), bsdf[[m]], stderr[[m]], one).worst_excess.any())
+    assert np.mean(named) < 0.05 + 4.0 * (0.05 / 600) ** 0.5
+
+
+def test_the_worst_cell_is_a_significant_one_even_if_another_deviates_more_by_chance():
+    truth = 3000 / RAYS * lobe()
+    wrong = truth.copy()
+    wrong[2, 9] += 60.0 / RAYS
+    found = compared(wrong, *count_paths(truth, 20, seed=31))
+    assert set(found.worst_row[:, 0]) == {2} and set(found.worst_column[:, 0]) == {9}
+
+
+def test_a_cell_that_nothing_hit_is_the_worst_only_if_many_hits_were_due():
+    """3 + log(96) = 7.6 of them for 96 cells."""
+    measured = count_paths(np.zeros((ROWS, COLUMNS)), 1, seed=1)
+    for due, row in ((7.0, -1), (8.0, 5)):
+        model = np.zeros((ROWS, COLUMNS))
+        model[5, 4] = due / RAYS
+        found = compared(model, *measured)
+        assert found.worst_row[0, 0] == row and (found.worst_excess[0, 0] > 0.0) == (row > 0)

@@ -5,6 +5,7 @@ import threading
 import numpy as np
 import pytest
 
+from goniosim.compare.measures import measure, rmse
 from goniosim.engine import probe, simulate, warm_up
 from goniosim.engine import unit as unit_module
 from goniosim.engine.plan import make_plan
@@ -29,6 +30,29 @@ def test_schedule_shares_all_rays_evenly(rays):
         assert max(sizes) <= LARGEST_UNIT
         assert len(sizes) >= 16
     assert schedule.checkpoints[-1] == schedule.rounds
+
+
+@pytest.mark.parametrize("rays", [100, 12_345])
+def test_a_work_unit_has_parts_with_ledgers_of_their_own(rays):
+    plan = make_plan(make_scene(PLASTIC, [30.0]))
+    tally = unit_module.Tally(plan)
+    report = unit_module.Workspace(plan).run(0, rays, unit_module.unit_key(1, 0, 0), tally, threading.Event())
+    assert len(report.part_rays) == len(tally.ledgers) == unit_module.PARTS
+    assert max(report.part_rays) - min(report.part_rays) <= 1 and report.rays == rays
+    np.testing.assert_allclose(tally.ledgers.sum(axis=1), np.array(report.part_rays)[:, None] * np.ones(3), rtol=1e-12)
+    assert len({part.tobytes() for part in tally.ledgers}) == unit_module.PARTS
+
+
+def test_the_noise_floor_is_that_of_the_table_of_errors():
+    """The mean over channels of the root, not the root of the mean: 20 % apart where channels are so unlike."""
+    layers = [dielectric(1.5, 0.2), medium([0.05, 0.5, 3.0]), dielectric(1.0, 0.2)]
+    result = simulate(make_scene(layers, [0.0, 60.0], rows=18, columns=36), rays=20_000)
+    for name in ("reflection/internal", "transmission"):
+        part = result.components[name]
+        found = rmse(measure(part.bsdf, part.bsdf, part.bsdf_stderr, result.cells))
+        assert result.cost.error[name][-1] == pytest.approx(found.noise_floor, rel=1e-12)
+        joint = (part.bsdf_stderr**2 * result.cells.projected_solid_angle[:, None]).sum(axis=(2, 3)).mean() ** 0.5
+        assert joint > 1.1 * found.noise_floor
 
 
 def test_a_stop_leaves_a_prefix_of_the_complete_result():

@@ -1,11 +1,13 @@
 """The tables of a summary, and the same as plain data."""
 
+import dataclasses
 import json
 
 import numpy as np
 import pytest
+from scipy.stats import norm, t
 
-from goniosim.report.simulation import audit, cost, study, summary
+from goniosim.report.simulation import audit, cost, forecast, losses, study, summary
 from synthetic import make_result
 
 
@@ -64,7 +66,7 @@ def test_a_loss_of_more_than_one_per_cent_is_said_in_words(result, lost, said):
     result.audit.energy["lost_masked_transmission"][:] = 0.0
     result.audit.energy["lost_masked_reflection"][1, 0] = 0.6 * lost
     result.audit.energy["lost_masked_transmission"][1, 0] = 0.4 * lost
-    lines = audit.loss_lines(result)
+    lines = losses.masking_lines(result)
     assert bool(lines) == said
     if said:
         assert f"{100 * lost:.1f} % of the energy (theta 60, channel R)" in lines[0]
@@ -76,18 +78,78 @@ def test_direct_reflection_is_compared_in_standard_errors(result):
     result.audit.direct_integrated[:] = result.audit.energy["reflected_direct"]
     result.audit.direct_integrated[1, 1] = 0.12
     result.audit.direct_integrated_stderr[1, 1] = 0.004
-    assert audit.direct_deviation(result)[1, 1] == pytest.approx(-4.0)
+    # 3 / rays, which may go unseen, is the third standard error.
+    assert audit.direct_deviation(result)[1, 1] == pytest.approx(-0.02 / np.sqrt(0.003**2 + 0.004**2 + 3e-5**2))
     assert np.count_nonzero(audit.direct_deviation(result)) == 1
     assert "4.0 sigma (theta 60, channel G)" in audit.direct_lines(result)[0]
     assert len(audit.direct_lines(result)) == 1
     result.audit.direct_integrated[1, 1] = 0.13
     assert "Warning" in audit.direct_lines(result)[1]
+    # With four parts behind the standard error, six of it are nothing unusual.
+    result.status = "partial"
+    assert len(audit.direct_lines(result)) == 1
+
+
+@pytest.mark.parametrize(("status", "parts"), [("complete", 64), ("partial", 4)])
+def test_the_alarm_is_as_rare_as_four_sigma(status, parts):
+    assert audit.ALARMING_SIGMAS[status] == pytest.approx(t.isf(norm.sf(4.0), parts - 1), rel=2e-3)
 
 
 def test_a_difference_without_noise_is_not_taken_for_agreement(result):
+    result.rays[:] = 10**7
     result.audit.stderr["reflected_direct"][:] = 0.0
     result.audit.direct_integrated_stderr[:] = 0.0
-    assert np.all(np.abs(audit.direct_deviation(result)) > audit.ALARMING_SIGMAS)
+    assert np.all(np.abs(audit.direct_deviation(result)) > audit.ALARMING_SIGMAS["complete"])
+
+
+def test_rays_that_all_met_the_same_fate_are_no_proof_that_none_meets_another(result):
+    """Of 2000 rays none entered, where one in 10 000 does: the sampled reflectance is 1 and has no scatter."""
+    result.rays[:] = 2000
+    result.audit.energy["reflected_direct"][:] = 1.0
+    result.audit.stderr["reflected_direct"][:] = 0.0
+    result.audit.direct_integrated[:] = 0.9999
+    assert np.abs(audit.direct_deviation(result)).max() < 0.1
+    result.audit.direct_integrated[:] = 0.99
+    assert np.abs(audit.direct_deviation(result)).min() > audit.ALARMING_SIGMAS["complete"]
+
+
+def test_the_albedo_of_what_nothing_hit_is_a_limit(result):
+    result.components["transmission"].hits[0] = 0
+    result.audit.energy["transmitted"][0] = result.audit.stderr["transmitted"][0] = 0.0
+    rows = audit.albedo_lines(result)[2:]
+    assert rows[0].endswith("< 3e-05") and "<" not in rows[-1]
+
+
+@pytest.mark.parametrize(("lost", "said"), [(0.99e-3, False), (1e-3, True), (0.05, True)])
+def test_light_lost_at_the_event_cap_is_said_in_one_line(result, lost, said):
+    result.audit.energy["reflected_internal"][1, 2], result.audit.energy["transmitted"][1, 2] = 0.15, 0.3
+    result.audit.energy["lost_event_cap"][1, 2] = lost
+    lines = [line for line in summary.summary(result).splitlines() if "event cap:" in line]
+    assert len(lines) == (1 if said else 0)
+    if lost == 0.05:
+        assert "5 % of the light (theta 60, channel B)" in lines[0] and "up to 10 % too dark" in lines[0]
+        assert "2e7 rays per direction lose a far smaller share" in lines[0]
+        result.rays[:] = 10**9
+        assert "more rays lose as much" in losses.event_cap(result)
+
+
+def test_the_forecast_warns_of_the_event_cap():
+    one = forecast.Forecast("trap", 1, 1000, 1e6, 2.0, 0.0, 1000, probe_rays=80_000, lost_event_cap=0.05)
+    (line,) = [line for line in forecast.cost_text([one]).splitlines() if "event cap" in line]
+    assert "trap" in line and "8e4 rays of the probe" in line and "5 %" in line
+    lossless = dataclasses.replace(one, lost_event_cap=0.9e-3)
+    assert "event cap" not in forecast.cost_text([lossless]) and "event cap" in forecast.cost_text([lossless, one])
+
+
+def test_what_is_left_out_is_said_in_three_lines(result):
+    result.audit.energy["lost_masked_reflection"][:] = result.audit.energy["lost_masked_transmission"][:] = 0.0
+    result.audit.energy["lost_masked_reflection"][1, 0] = 0.123
+    lines = losses.left_out_lines(result)
+    assert len(lines) == 3 and "polarisation" in lines[0] and "thin films" in lines[1]
+    assert "12 % here (theta 60, channel R)" in lines[2]
+    assert "\n".join(lines) in summary.description(result)
+    result.audit.energy["lost_masked_reflection"][:] = 0.0
+    assert "loses nothing here" in losses.left_out_lines(result)[2]
 
 
 def test_a_direction_without_rays_is_named_so_and_divides_nothing(result):

@@ -5,9 +5,6 @@ from ...optics.medium import path_length, transmittance
 from ...optics.random import derive_key, uniform
 from ..layout import ABSORBED_MEDIA, LOST_ROULETTE, WEIGHT, Z
 
-# A ray fainter than this in every channel survives with a probability that restores it to this
-# weight. The mean is untouched; the loop stops following rays that no cell would notice.
-ROULETTE_WEIGHT = 1e-3
 # Which child of the stage's key decides the roulette.
 ROULETTE = 3
 
@@ -42,36 +39,40 @@ def _absorb_channel(weight, n, tau, path):
 
 
 @stage
-def roulette(batch, n, channels, brightest, key, ledger):
+def roulette(batch, n, scale, brightness, key, ledger):
     """Play Russian roulette with the faint ones among ``n`` rays; the losers' weights become 0.
 
-    Returns whether any ray was faint; ``brightest`` is overwritten.
+    ``scale`` holds for each channel the reciprocal of the weight below which a ray is faint. A ray
+    that is so in every channel survives with a probability that restores it to where it is not. The
+    mean is untouched; the loop stops following rays that no cell would notice. Returns whether any
+    ray was faint; ``brightness`` is overwritten.
     """
-    if not _any_faint(batch, n, channels, brightest):
+    if not _any_faint(batch, n, scale, brightness):
         return False
     roulette_key = derive_key(key, ROULETTE)
     for i in range(n):
-        bright = brightest[i]
-        survives = uniform(roulette_key, i) * ROULETTE_WEIGHT < bright
-        boost = ROULETTE_WEIGHT / max(bright, 1e-300) if survives else 0.0
-        brightest[i] = boost if bright < ROULETTE_WEIGHT else 1.0
-    for c in range(channels):
-        ledger[LOST_ROULETTE, c] += _rescale(batch[WEIGHT + c], n, brightest)
+        bright = brightness[i]
+        boost = 1.0 / max(bright, 1e-300) if uniform(roulette_key, i) < bright else 0.0
+        brightness[i] = boost if bright < 1.0 else 1.0
+    for c in range(scale.shape[0]):
+        ledger[LOST_ROULETTE, c] += _rescale(batch[WEIGHT + c], n, brightness)
     return True
 
 
 @stage
-def _any_faint(batch, n, channels, brightest):
+def _any_faint(batch, n, scale, brightness):
     weight = batch[WEIGHT]
+    unit = scale[0]
     for i in range(n):
-        brightest[i] = weight[i]
-    for c in range(1, channels):
+        brightness[i] = weight[i] * unit
+    for c in range(1, scale.shape[0]):
         weight = batch[WEIGHT + c]
+        unit = scale[c]
         for i in range(n):
-            brightest[i] = max(brightest[i], weight[i])
+            brightness[i] = max(brightness[i], weight[i] * unit)
     faint = 0
     for i in range(n):
-        faint += 1 if brightest[i] < ROULETTE_WEIGHT else 0
+        faint += 1 if brightness[i] < 1.0 else 0
     return faint > 0
 
 

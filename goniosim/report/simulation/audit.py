@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import text
+from .losses import masking_lines
 
 # The audit entry whose standard error is that of a sampled component's albedo.
 SAMPLED_ENTRY = {
@@ -24,10 +25,12 @@ AUDIT_HEADINGS = {
 
 # Smaller shares of the energy, as the balance of Russian roulette, get no column of their own.
 NEGLIGIBLE = 1e-6
-# Share of the energy from which the loss to single scattering is said in words.
-NOTEWORTHY_LOSS = 0.01
-# Deviation between sampled and integrated direct reflection that chance does not explain.
-ALARMING_SIGMAS = 4.0
+# Deviation between sampled and integrated direct reflection that chance does not explain: as rare as 4
+# sigma of a normal quantity. The sampled one has its error bar from the scatter of at least 64 parts, or 4
+# if the run was stopped, so that deviations follow Student's t with 63 or 3 degrees of freedom.
+ALARMING_SIGMAS = {"complete": 4.29, "partial": 32.6}
+# Events that chance may keep from being seen even once, see docs/compare.md.
+RULE_OF_THREE = 3.0
 # The rounding of a sum over very many rays; two values closer than this agree.
 ROUNDING = 1e-10
 
@@ -63,9 +66,17 @@ def albedo_lines(result):
     rows = _rows(
         result,
         [a for pair in pairs.values() for a in pair],
-        [lambda i, c, pair=pair: text.with_error(pair[0][i, c], pair[1][i, c]) for pair in pairs.values()],
+        [lambda i, c, name=name: _albedo(result, name, *pairs[name], i, c) for name in pairs],
     )
     return ["Albedo (fraction of the incident energy)", *text.table(header, rows)]
+
+
+def _albedo(result, name, value, stderr, i, c):
+    hits = result.components[name].hits
+    if hits is not None and not hits[i].any():
+        # Not seen is not zero: this is its limit at 95 % confidence.
+        return f"< {RULE_OF_THREE / result.rays[i]:.1g}"
+    return text.with_error(value[i, c], stderr[i, c])
 
 
 def audit_lines(result):
@@ -92,22 +103,7 @@ def audit_lines(result):
     if omitted:
         names = ", ".join(name.replace("\n", " ") for name in omitted)
         lines.append(f"  Not shown, since below {100.0 * NEGLIGIBLE:g} %: {names}.")
-    return lines + loss_lines(result)
-
-
-def loss_lines(result):
-    """Say in words how much energy single-scattering masking loses, if it is noteworthy."""
-    energy = result.audit.energy
-    lost = energy["lost_masked_reflection"] + energy["lost_masked_transmission"]
-    if not lost.size or lost.max() <= NOTEWORTHY_LOSS:
-        return []
-    i, c = np.unravel_index(np.argmax(lost), lost.shape)
-    return [
-        f"  Note: up to {100.0 * lost[i, c]:.1f} % of the energy (theta {text.degrees(result.theta_deg[i])}, "
-        f"channel {result.channels[c]}) is lost to single-scattering masking.",
-        "  The GGX model used has no inter-reflection inside a rough interface: light that a facet sends",
-        "  to the wrong side is gone. This is a property of the model; more rays do not reduce it.",
-    ]
+    return lines + masking_lines(result)
 
 
 def direct_deviation(result):
@@ -120,14 +116,17 @@ def direct_deviation(result):
     Returns
     -------
     ndarray, shape (M, C)
-        Zero where both agree to rounding or where no ray was traced.
+        Zero where both agree to rounding or where no ray was traced. 3/rays, which may go unseen, counts
+        as a standard error.
     """
     audit = result.audit
     difference = audit.energy["reflected_direct"] - audit.direct_integrated
-    sigma = np.hypot(audit.stderr["reflected_direct"], audit.direct_integrated_stderr)
+    # Where nearly all rays meet the same fate the few others may be missing, and no scatter tells.
+    unseen = RULE_OF_THREE / np.maximum(result.rays, 1)[:, None]
+    stderr = audit.stderr["reflected_direct"]
+    sigma = np.sqrt(stderr**2 + audit.direct_integrated_stderr**2 + unseen**2)
     meaningful = (np.abs(difference) > ROUNDING) & (result.rays > 0)[:, None]
-    # A difference beyond rounding between two values without noise must not pass for agreement.
-    return np.where(meaningful, difference / np.maximum(sigma, ROUNDING), 0.0)
+    return np.where(meaningful, difference / sigma, 0.0)
 
 
 def direct_lines(result):
@@ -142,8 +141,8 @@ def direct_lines(result):
         f"{len(groups) * len(result.theta_deg)} deviations {abs(deviation[i, c]):.1f} sigma "
         f"(theta {text.degrees(result.theta_deg[i])}, channel {result.channels[c]})"
     ]
-    if abs(deviation[i, c]) > ALARMING_SIGMAS:
-        lines.append("  Warning: chance explains this only once in 16000 times; do not trust this file.")
+    if abs(deviation[i, c]) > ALARMING_SIGMAS[result.status]:
+        lines.append("  Warning: chance explains such a deviation once in 16000 times; do not trust this file.")
     return lines
 
 

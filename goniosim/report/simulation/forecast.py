@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from .. import text
+from .losses import NOTEWORTHY_CAP, cap_remedy
 
 # Seconds spent on probing one material, and on probing a whole study.
 PROBE = 1.0
@@ -25,6 +26,10 @@ class Forecast:
         Time that compilation, or loading from the cache, took.
     n_bytes : int
         Upper estimate of the size of the result file.
+    probe_rays : int
+        Rays of the probe, all directions together.
+    lost_event_cap : float
+        Largest share of the flux that it lost at the event cap.
     """
 
     name: str
@@ -34,6 +39,8 @@ class Forecast:
     events_per_ray: float
     compile_seconds: float
     n_bytes: int
+    probe_rays: int
+    lost_event_cap: float
 
     @property
     def seconds(self):
@@ -96,6 +103,8 @@ def forecasts(scenes):
                 events_per_ray=measured.events_per_ray,
                 compile_seconds=measured.compile_seconds,
                 n_bytes=file_size(scene),
+                probe_rays=measured.rays,
+                lost_event_cap=measured.lost_event_cap,
             )
         )
     return made
@@ -147,9 +156,18 @@ def cost_text(made):
             *text.table(header, rows),
             f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)}.",
         ]
+    lines += [_event_cap(one) for one in made if one.lost_event_cap >= NOTEWORTHY_CAP]
     if compilation > 1.0:
         lines.append(f"  Compilation took {text.duration(compilation)}; it is kept for the next run.")
     return "\n".join(lines)
+
+
+def _event_cap(one):
+    # Each work unit of the probe has less rays than one of a long run, which loses a smaller share.
+    return (
+        f"  Warning: event cap: {one.name} traps light between interfaces; of the {text.count(one.probe_rays)} rays of "
+        f"the probe up to {100.0 * one.lost_event_cap:.2g} % were cut and lost; {cap_remedy(one.rays)}"
+    )
 
 
 def _heading(scene):

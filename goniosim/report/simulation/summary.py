@@ -6,7 +6,7 @@ import os
 import numpy as np
 
 from .. import text
-from . import audit, cost
+from . import audit, cost, losses
 
 
 def summary(result, path=None):
@@ -27,6 +27,7 @@ def summary(result, path=None):
         audit.albedo_lines(result),
         audit.audit_lines(result),
         audit.direct_lines(result),
+        [line for line in [losses.event_cap(result)] if line],
         cost.cost_lines(result),
     ]
     if path is not None:
@@ -35,7 +36,7 @@ def summary(result, path=None):
 
 
 def description(result):
-    """Describe a result file: its summary, the effects simulated and where it came from.
+    """Describe a result file: its summary, the effects simulated and left out, and where it came from.
 
     Parameters
     ----------
@@ -50,8 +51,9 @@ def description(result):
     effects = [f"Effects simulated: {', '.join(present) or 'none'}"]
     if absent:
         effects.append(f"  not called for: {', '.join(absent)}")
+    left_out = losses.left_out_lines(result)
     origin = ["Origin", *_pairs(result.provenance)]
-    return "\n\n".join([summary(result), "\n".join(effects), "\n".join(origin)])
+    return "\n\n".join([summary(result), *("\n".join(lines) for lines in (effects, left_out, origin))])
 
 
 def heading_lines(result):
