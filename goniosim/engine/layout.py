@@ -32,7 +32,7 @@ LOST_ROULETTE = 7
 LOST_CAP = 8
 N_LEDGER = 9
 
-# Entries of the integer state of a work unit.
+# Entries of the integer state of a part of a work unit.
 LEFT = 0  # rays not yet launched
 STAGES = 1  # stages run so far: the counter of the random numbers
 ROUNDS = 2  # stages run since the last ray was launched

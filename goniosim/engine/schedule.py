@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 LARGEST_UNIT = 1 << 20
-# Enough independent units for a standard error by their scatter, and for all cores to be busy.
+# Enough units for all cores to be busy, and, by their parts, for a standard error by scatter.
 FEWEST_UNITS = 16
 
 

@@ -120,8 +120,9 @@ class _Run:
 
     def trace(self, progress, stop):
         """Run all work units, summing their tallies in the order of the schedule."""
+        start, cpu_start = time.perf_counter(), time.thread_time()
         faint = faint_weights(self.plan)
-        start = time.perf_counter()
+        self.cpu_seconds += time.thread_time() - cpu_start
         in_flight = self.threads + 2
         spare = [Tally(self.plan) for _ in range(in_flight)]
         local = threading.local()

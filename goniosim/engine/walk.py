@@ -37,14 +37,14 @@ ABOVE, BELOW = 0, 1
 _HALF_WORD = np.uint64(32)
 _LOW_HALF = np.uint64(0xFFFFFFFF)
 
-# Stages per queue that a work unit may run after its last ray was launched. Rays that are still
-# on their way then are booked as lost. No ray is cut before it has met this many interfaces.
+# Stages per queue that a part of a work unit may run after its last ray was launched. Rays that are
+# still on their way then are booked as lost. No ray is cut before it has met this many interfaces.
 MAX_ROUNDS = 10_000
 
 
 @kernel
-def walk(stack, scales, light, unit_key, budget, space, ledger, cells):
-    """Advance one work unit by about ``budget`` events; returns whether it is finished.
+def walk(stack, scales, light, part_key, budget, space, ledger, cells):
+    """Advance one part of a work unit by about ``budget`` events; returns whether it is finished.
 
     Parameters
     ----------
@@ -54,12 +54,12 @@ def walk(stack, scales, light, unit_key, budget, space, ledger, cells):
         Reciprocals of the weights below which a ray is faint, see `faint.faint_weights`.
     light : ndarray, shape (3,)
         Unit vector to the light.
-    unit_key : uint64
-        Key of the work unit's random numbers.
+    part_key : uint64
+        Key of the part's random numbers.
     budget : int
         Events after which to return to the caller, who looks at signals.
     space : tuple
-        The arrays of a `unit.Workspace`: state of the unit, number of rays in each queue, queues,
+        The arrays of a `unit.Workspace`: state of the part, number of rays in each queue, queues,
         one batch, its scratch rows, one and two rows for sorting it, and the rays that left upwards and
         downwards and await their cell, with their numbers.
     ledger : ndarray, shape (N_LEDGER, channels)
@@ -74,7 +74,7 @@ def walk(stack, scales, light, unit_key, budget, space, ledger, cells):
     stop_at = state[EVENTS] + budget
     while state[EVENTS] < stop_at:
         q = _fullest(filled)
-        key = derive_key(unit_key, state[STAGES])
+        key = derive_key(part_key, state[STAGES])
         state[STAGES] += 1
         if filled[q] < batch_size and state[LEFT] > 0:
             n = min(batch_size, state[LEFT])

@@ -99,6 +99,17 @@ def test_errors_csv_has_a_row_for_all_and_one_for_each(report):
         and (row["channel"], row["theta_deg"]) == ("mean", "all")
     ]
     assert exact["below_noise"] == "1" and exact["subcells"] == "9"
+    # No cell of the exact model is anything but noise; a cell of a wrong one is, and stands in full.
+    worst = [name for name in COLUMNS if name.startswith("worst_")]
+    assert not any(exact[name] for name in worst)
+    (wrong,) = [
+        row
+        for row in rows
+        if (row["material"], row["model"], row["options"]) == ("metal", "belcour18_forward", "")
+        and (row["component"], row["channel"], row["theta_deg"]) == ("reflection/internal", "mean", "all")
+    ]
+    assert all(wrong[name] for name in worst)
+    assert abs(float(wrong["worst_difference"])) > 4.0 * float(wrong["worst_stderr"])
     assert float(exact["rmse_eq4"]) == pytest.approx(float(exact["noise_floor"]), rel=0.2)
     assert abs(float(exact["albedo_error"])) < 5.0 * float(exact["albedo_reference_stderr"])
 
