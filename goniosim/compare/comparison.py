@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..errors import ConfigError, UnusableResultError
 from ..result import Result
-from ..store import open_result
+from ..store import is_models_file, open_result
 from .integrate import make_pool
 from .material import MaterialComparison, compare_material
 from .rows import material_rows
@@ -93,7 +93,7 @@ def compare(results, models=None, options=None, subcells=5, *, allow_partial=Fal
     sources = results if isinstance(results, (list, tuple)) else [results]
     found = []
     for source in sources:
-        found += [source] if isinstance(source, Result) else result_files(source)
+        found += [source] if isinstance(source, Result) else result_files(source)[0]
     materials = []
     with make_pool() as pool:
         for each in found:
@@ -137,17 +137,21 @@ def result_files(path):
 
     Returns
     -------
-    list of Path
+    files : list of Path
+    passed_over : list of Path
+        Those in the folder that hold integrated models.
 
     Raises
     ------
     UnusableResultError
-        A folder without such files.
+        A folder without result files.
     """
     path = Path(os.fspath(path))
     if not path.is_dir():
-        return [path]
-    files = sorted(path.glob("*.h5"))
+        return [path], []
+    found = sorted(path.glob("*.h5"))
+    passed_over = [file for file in found if is_models_file(file)]
+    files = [file for file in found if file not in passed_over]
     if not files:
         raise UnusableResultError(f"{path}: holds no result files (*.h5); give a folder of results")
-    return files
+    return files, passed_over

@@ -3,14 +3,12 @@
 import contextlib
 import errno
 import os
-import secrets
 import tempfile
 from pathlib import Path
 
 from goniosim.errors import OutputError
 from goniosim.store import userblock
-
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+from goniosim.writing import NO_ROOM, explained, remedy, temporary_beside
 
 
 class Reservation:
@@ -34,8 +32,7 @@ class Reservation:
     def __init__(self, target, shown):
         self._target = target
         self._shown = shown
-        # Hidden and not ending in .h5, so that nobody takes it for a result; cut, since names are limited.
-        self._temporary = target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
+        self._temporary = temporary_beside(target)
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
         self._descriptor = os.open(self._temporary, flags, 0o666)
 
@@ -65,7 +62,7 @@ class Reservation:
             os.posix_fallocate(self._descriptor, 0, max(1, size_bytes))
         except (AttributeError, OSError) as error:
             # Anything else means that this system or file system cannot allocate ahead.
-            if getattr(error, "errno", None) in _NO_ROOM:
+            if getattr(error, "errno", None) in NO_ROOM:
                 raise
 
     def commit(self, parts):
@@ -82,12 +79,9 @@ class Reservation:
             If the file cannot be written; the target is then as it was.
         """
         _refuse_to_destroy(self._target, self._shown)
-        try:
+        with explained(self._shown):
             _write(self._descriptor, parts)
             os.replace(self._temporary, self._target)
-        except OSError as error:
-            message = f"{self._shown}: cannot be written: {error.strerror}; {_remedy(error)}"
-            raise OutputError(message) from error
         # The name itself survives a power cut only after this. Some network file systems refuse it.
         with contextlib.suppress(OSError):
             folder = os.open(self._target.parent, os.O_RDONLY)
@@ -136,14 +130,14 @@ def reserve_output(path, size_bytes):
         reservation = Reservation(target, path)
     except OSError as error:
         raise OutputError(
-            f"{path}: the folder {target.parent} takes no new file: {error.strerror}; {_remedy(error)}"
+            f"{path}: the folder {target.parent} takes no new file: {error.strerror}; {remedy(error)}"
         ) from error
     try:
         reservation.allocate(size_bytes)
     except OSError as error:
         reservation.release()
         raise OutputError(
-            f"{path}: no room for about {size_bytes / 1e6:.1f} MB: {error.strerror}; {_remedy(error)}"
+            f"{path}: no room for about {size_bytes / 1e6:.1f} MB: {error.strerror}; {remedy(error)}"
         ) from error
     except BaseException:
         reservation.release()
@@ -188,12 +182,6 @@ def _refuse_to_destroy(target, shown):
         raise OutputError(
             f"{shown}: exists and is not a goniosim result, so it is not overwritten; choose another name or remove it"
         )
-
-
-def _remedy(error):
-    if error.errno in _NO_ROOM:
-        return "free some space, raise the quota or the limit on file sizes, or choose another place"
-    return "check the permissions, or choose another place"
 
 
 def _write(descriptor, parts):

@@ -4,12 +4,13 @@ import contextlib
 import re
 
 import h5py
-import numpy as np
 
-from goniosim.errors import DamagedFileError
-from goniosim.result import AUDIT_ENTRIES, Audit, Cells, Component, Cost, Result
+from goniosim.errors import DamagedFileError, ForeignFileError, UnusableResultError
+from goniosim.result import AUDIT_ENTRIES, Audit, Component, Cost, Result
 from goniosim.store import userblock
+from goniosim.store.decoding import attributes, cells, decoding, find, find_shaped, values
 from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, SCALES, describe
+from goniosim.store.models.reader import is_models_file
 
 _ORDER = re.compile(r"order_(\d+)(?:_and_more)?")
 
@@ -33,9 +34,11 @@ def open_result(path):
         If it was truncated or altered since it was written.
     NewerSchemaError
         If its major schema version is newer than this goniosim reads.
+    UnusableResultError
+        If it is a file of integrated models: `goniosim.store.open_models` reads those.
     """
     with userblock.open_regular(path) as stream:
-        block = userblock.read(stream, path)
+        block = _user_block(stream, path)
         userblock.verify(stream, block, path)
         with _hdf5(stream, path) as file:
             return _result(file)
@@ -58,16 +61,28 @@ def read_header(path):
 
     Raises
     ------
-    ForeignFileError, DamagedFileError, NewerSchemaError
+    ForeignFileError, DamagedFileError, NewerSchemaError, UnusableResultError
         As `open_result`.
     """
     with userblock.open_regular(path) as stream:
-        block = userblock.read(stream, path)
+        block = _user_block(stream, path)
         with _hdf5(stream, path) as file:
-            attributes = _attributes(file)
-        if userblock.attributes_digest(attributes) != block.attributes_digest:
+            found = attributes(file)
+        if userblock.attributes_digest(found) != block.attributes_digest:
             raise DamagedFileError(f"{path}: its root attributes are damaged; {userblock.REMEDY}")
-        return attributes
+        return found
+
+
+def _user_block(stream, path):
+    try:
+        return userblock.read(stream, path)
+    except ForeignFileError:
+        if is_models_file(path):
+            raise UnusableResultError(
+                f"{path}: holds integrated models and no simulation; name a file that `goniosim simulate` wrote "
+                "(`goniosim info`, `goniosim plot` and goniosim.store.open_models take this one)"
+            ) from None
+        raise
 
 
 @contextlib.contextmanager
@@ -78,49 +93,29 @@ def _hdf5(stream, path):
     another file could take its place, and needs no file locks, which some
     network file systems lack.
     """
-    try:
-        with h5py.File(stream, "r") as file:
-            yield file
-    except (OSError, RuntimeError, LookupError, TypeError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise DamagedFileError(f"{path}: cannot be decoded: {reason}; {userblock.REMEDY}") from error
-
-
-def _attributes(file):
-    return {name: _plain(value) for name, value in file.attrs.items()}
-
-
-def _plain(value):
-    if isinstance(value, bytes):
-        return value.decode()
-    return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
+    with decoding(path, userblock.REMEDY), h5py.File(stream, "r") as file:
+        yield file
 
 
 def _result(file):
-    sizes = {dim: len(_dataset(file, scale)) for dim, scale in SCALES.items()}
+    sizes = {dim: len(find(file, scale)) for dim, scale in SCALES.items()}
 
     def read(path):
-        return _read(file, path, sizes)
+        entry = describe(path)
+        return values(find_shaped(file, path, entry, sizes), entry)
 
-    attributes = _attributes(file)
+    header = attributes(file)
     return Result(
-        config_yaml=attributes["config_yaml"],
-        config_hash=attributes["config_hash"],
-        name=attributes["name"],
-        status=attributes["status"],
-        seed=attributes["seed"],
+        config_yaml=header["config_yaml"],
+        config_hash=header["config_hash"],
+        name=header["name"],
+        status=header["status"],
+        seed=header["seed"],
         theta_deg=read("incident/theta_deg"),
         phi_deg=read("incident/phi_deg"),
         rays=read("incident/rays"),
         channels=read("channels/name"),
-        cells=Cells(
-            parametrization=_plain(file["cells"].attrs["parametrization"]),
-            row_edges=read("cells/row_edges"),
-            column_edges=read("cells/column_edges"),
-            valid=read("cells/valid"),
-            solid_angle=read("cells/solid_angle"),
-            projected_solid_angle=read("cells/projected_solid_angle"),
-        ),
+        cells=cells(file, read),
         components={path: _component(file, path, read) for path in COMPONENTS if path in file},
         audit=Audit(
             energy={entry: read(f"audit/{entry}") for entry in AUDIT_ENTRIES},
@@ -131,7 +126,7 @@ def _result(file):
         cost=_cost(file, read),
         effects={name: bool(called_for) for name, called_for in file["effects"].attrs.items()},
         provenance={
-            name: value for name, value in attributes.items() if name not in NOT_PROVENANCE and isinstance(value, str)
+            name: value for name, value in header.items() if name not in NOT_PROVENANCE and isinstance(value, str)
         },
     )
 
@@ -157,19 +152,3 @@ def _cost(file, read):
         cpu_seconds=read("cost/cpu_seconds"),
         error={component: read(path) for component, path in errors.items() if path in file},
     )
-
-
-def _read(file, path, sizes):
-    entry = describe(path)
-    values = _dataset(file, path)[()]
-    if values.shape != tuple(sizes[dim] for dim in entry.dims):
-        raise ValueError(f"the dataset {path} has shape {values.shape}, not {entry.dims} of {sizes}")
-    if entry.dtype == "text":
-        return [_plain(text) for text in values]
-    return values.astype(entry.dtype, copy=False)
-
-
-def _dataset(file, path):
-    if path not in file:
-        raise ValueError(f"the dataset {path} is missing")
-    return file[path]

@@ -1,5 +1,7 @@
 """How models look in all figures: the colours of Bati et al. 2019, and a pattern for a second reading."""
 
+import numpy as np
+
 COLOURS = {
     "ww09": "#d1242f",
     "elek10": "#f08c00",
@@ -16,22 +18,49 @@ MARKERS = {
     "belcour18_symmetric": "v",
     "bati19_belcour": "P",
 }
+# A model of a file that comes from elsewhere.
+OTHERS = "0.45"
 DASHED = (0, (2.2, 1.2))
+THICKEST, THINNEST = 2.4, 0.8
+BAND = "0.75"
+SIMULATION = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 1.3}
 
 
 def colour(variant):
     """Colour of a model, whatever its options."""
-    return COLOURS[variant.model]
+    return COLOURS.get(variant.model, OTHERS)
 
 
 def marker(variant):
     """Marker of a model, whatever its options."""
-    return MARKERS[variant.model]
+    return MARKERS.get(variant.model, "X")
 
 
 def line_style(variant):
     """Solid for a model with its usual options, dashed otherwise."""
     return DASHED if variant.options else "-"
+
+
+def lines(entries):
+    """How entries are drawn as lines.
+
+    Parameters
+    ----------
+    entries : list of goniosim.report.comparison.entries.Entry
+
+    Returns
+    -------
+    list of dict
+        Arguments of a `matplotlib.lines.Line2D`. Later models are thinner, so that those that nearly
+        agree are all seen.
+    """
+    widths = np.linspace(THICKEST, THINNEST, len(entries))
+    return [
+        SIMULATION
+        if entry.model is None
+        else {"color": colour(entry), "linestyle": line_style(entry), "linewidth": width}
+        for entry, width in zip(entries, widths, strict=True)
+    ]
 
 
 def spread_out(variants):

@@ -103,6 +103,9 @@ def _joined(patches, degrees_per_tilt):
 
 
 def _join(group):
+    if len(group) == 1:
+        ((low, high, _, f, sigma),) = group
+        return 0.5 * (low + high), f, sigma
     lows, highs, sizes, f, sigma = zip(*group, strict=True)
     weights = np.array(sizes)[:, None] / sum(sizes)
     return (
