@@ -113,8 +113,8 @@ def of_models(material, models, number):
 
     Parameters
     ----------
-    material : goniosim.store.models.reader.MaterialEntry
-    models : list of (goniosim.store.models.reader.ModelEntry, dict of str to goniosim.result.Component)
+    material : goniosim.store.models.contents.MaterialEntry
+    models : list of (goniosim.store.models.contents.ModelEntry, dict of str to goniosim.result.Component)
     number : int
         Which of the incident directions.
 

@@ -76,10 +76,10 @@ def draw(models, folder, stem, *, suffix="png", theta_deg=None, materials=None, 
 
 
 def _together(models, material, stem, suffix, theta_deg, with_directions):
-    slices = [(entry, models.slices(material, entry)) for entry in material.models]
+    name, component = material.name, material.main_component
+    slices = [(entry, models.slices(material, entry, component)) for entry in material.models]
     if not slices:
         return
-    name, component = material.name, material.main_component
     numbers = directions.chosen(material.theta_deg, theta_deg)
     seen = [entries.of_models(material, slices, number) for number in numbers]
     figures = [] if theta_deg else overviews(name, component, seen, stem, [suffix])

@@ -1,81 +1,20 @@
 """Reading integrated models, one at a time: a study holds more than fits into memory."""
 
 import contextlib
-import hashlib
-from dataclasses import dataclass
 
 import h5py
-import numpy as np
 
 from goniosim.errors import ForeignFileError, NewerSchemaError
-from goniosim.result import Cells, Component
+from goniosim.result import Component
 from goniosim.store import userblock
-from goniosim.store.decoding import attributes, cells, decoding, find, find_shaped, plain, text, values
-from goniosim.store.layout import SCALES
+from goniosim.store.decoding import attributes, decoding, plain, text, values
 from goniosim.store.models import checksums
-from goniosim.store.models.layout import (
-    COMPONENTS,
-    FILETYPE,
-    NOT_PROVENANCE,
-    SCHEMA_VERSION,
-    SHARED,
-    VALUES,
-    describe,
-)
+from goniosim.store.models.contents import listed, read_material
+from goniosim.store.models.layout import FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, VALUES, describe
 
 REMEDY = "restore it from a copy or compare again"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _UNREADABLE = "unreadable"
-
-
-@dataclass(frozen=True)
-class ModelEntry:
-    """What a file tells of a model without its slices.
-
-    Attributes
-    ----------
-    label : str
-        Name of the model with its options: ``belcour18_forward[jacobian=snell]``.
-    model, options : str
-        The two apart.
-    components : dict of str to bool
-        Whether some energy of the component leaves in exactly one direction.
-    """
-
-    label: str
-    model: str
-    options: str
-    components: dict[str, bool]
-
-
-@dataclass(frozen=True)
-class MaterialEntry:
-    """What a file tells of a material.
-
-    Attributes
-    ----------
-    name, config_yaml, config_hash : str
-        Of the result that was compared.
-    main_component : str
-        The component by which the models were ranked.
-    theta_deg, phi_deg : ndarray, shape (M,)
-    rays : ndarray of int64, shape (M,)
-        Of the simulation.
-    channels : list of str
-    cells : goniosim.result.Cells
-    models : tuple of ModelEntry
-    """
-
-    name: str
-    config_yaml: str
-    config_hash: str
-    main_component: str
-    theta_deg: np.ndarray
-    phi_deg: np.ndarray
-    rays: np.ndarray
-    channels: list[str]
-    cells: Cells
-    models: tuple[ModelEntry, ...]
 
 
 class ModelsFile:
@@ -97,7 +36,7 @@ class ModelsFile:
         self.provenance = {
             name: value for name, value in header.items() if name not in NOT_PROVENANCE and isinstance(value, str)
         }
-        self.materials = _listed(file, "materials", self.schema_version)
+        self.materials = listed(file, "materials", self.schema_version)
 
     def material(self, name):
         """Read what describes a material, and make sure that the slices of its models are there.
@@ -116,37 +55,17 @@ class ModelsFile:
         DamagedFileError
         """
         with decoding(self._path, REMEDY):
-            group = self._file[name]
-            config_yaml = text(group, "config_yaml")
-            if text(group, "name") != name:
-                raise ValueError(f"the material {name} calls itself {text(group, 'name')}")
-            if self.schema_version != "1.0" and _sha256(config_yaml) != text(group, "config_yaml_sha256"):
-                raise ValueError(f"the scene of {name} does not match its digest")
-            sizes = {dim: len(find(group, scale)) for dim, scale in SCALES.items() if dim != "rays"}
-            shared = {entry.path: values(find_shaped(group, entry.path, entry, sizes), entry) for entry in SHARED}
-            models = tuple(
-                _model_entry(group[label], label, sizes) for label in _listed(group, "models", self.schema_version)
-            )
-            return MaterialEntry(
-                name=name,
-                config_yaml=config_yaml,
-                config_hash=text(group, "config_hash"),
-                main_component=_main_component(group, models, self.schema_version),
-                theta_deg=shared["incident/theta_deg"],
-                phi_deg=shared["incident/phi_deg"],
-                rays=shared["incident/rays"],
-                channels=shared["channels/name"],
-                cells=cells(group, shared.__getitem__),
-                models=models,
-            )
+            return read_material(self._file[name], name, self.schema_version)
 
-    def slices(self, material, model):
+    def slices(self, material, model, component=""):
         """Read the slices of a model.
 
         Parameters
         ----------
         material : MaterialEntry
         model : ModelEntry
+        component : str
+            Only components whose names begin so.
 
         Returns
         -------
@@ -165,6 +84,7 @@ class ModelsFile:
                     contains_delta=contains_delta,
                 )
                 for name, contains_delta in model.components.items()
+                if name.startswith(component)
             }
 
     def verify(self):
@@ -252,44 +172,3 @@ def _foreign(path):
     return ForeignFileError(
         f"{path}: is not a file of integrated models; name a models.h5 that `goniosim compare` wrote"
     )
-
-
-def _listed(group, name, version):
-    """Names that an attribute lists, each of a group that is there."""
-    if version == "1.0":
-        # It had no lists, and nothing beside what was compared.
-        return tuple(
-            key
-            for key, node in group.items()
-            if isinstance(node, h5py.Group) and ("config_hash" in node.attrs or "model" in node.attrs)
-        )
-    names = tuple(text(group, name).splitlines())
-    for each in names:
-        if "/" in each or not isinstance(group.get(each), h5py.Group):
-            raise ValueError(f"the group {each} of {group.name} is missing")
-    return names
-
-
-def _model_entry(group, label, sizes):
-    found = {}
-    for component in COMPONENTS:
-        if f"{component}/{VALUES[0]}" in group:
-            for name in VALUES:
-                path = f"{component}/{name}"
-                find_shaped(group, path, describe(path), sizes)
-            found[component] = bool(group[component].attrs["contains_delta"])
-    if not found:
-        raise ValueError(f"the model {group.name} has no component")
-    return ModelEntry(label, text(group, "model"), text(group, "options"), found)
-
-
-def _main_component(group, models, version):
-    if version == "1.0":
-        return next(
-            name for name in ("transmission", *COMPONENTS[1:]) if any(name in each.components for each in models)
-        )
-    return text(group, "main_component")
-
-
-def _sha256(words):
-    return hashlib.sha256(words.encode()).hexdigest()
