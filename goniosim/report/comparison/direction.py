@@ -7,10 +7,10 @@ from ..drawing import panels, tone
 from ..drawing.bands import bar
 from ..drawing.disks import ASPECT, Board
 from ..drawing.legend import caption, title
-from . import half_disk, labels, legend
+from . import half_disk, labels, legend, style
 from .scale import Scale
 
-PIXELS = 220
+PIXELS = 160
 # Inches. On the left the lobes, with the list of models below; on the right two views of each entry.
 LEFT, GAP, COLUMNS = 0.25, 0.3, 5
 LOBES, LOBES_OF_MANY = 5.0, 6.6
@@ -43,7 +43,7 @@ def direction_figure(name, component, direction):
     right = LEFT + lobes + GAP
     width = right + columns * STEP + BAR_ROOM
     height = TOP + max(rows * CELL, lobes_height + LIST_GAP + legend.list_height(entries)) + FOOTER
-    figure = Figure(figsize=(width, height))
+    figure = Figure(figsize=(width, height), dpi=style.DISKS_DPI)
     title(figure, f"{name},  {component},  light at {text.degrees(direction.theta_deg)}°")
     half_disk.draw(panels.place(figure, LEFT, TOP, lobes, lobes_height), direction, size=1.25)
     legend.place_list(figure, LEFT, TOP + lobes_height + LIST_GAP, lobes, entries)

@@ -18,6 +18,9 @@ MARKERS = {
     "belcour18_symmetric": "v",
     "bati19_belcour": "P",
 }
+# There are many figures with many disks: half the size and the time of what one result gets.
+DISKS_DPI = 110
+
 # A model of a file that comes from elsewhere.
 OTHERS = "0.45"
 DASHED = (0, (2.2, 1.2))

@@ -5,10 +5,10 @@ from matplotlib.figure import Figure
 from .. import text
 from ..drawing.disks import ASPECT, Board
 from ..drawing.legend import caption, title
-from . import labels
+from . import labels, style
 from .scale import Scale
 
-PIXELS = 220
+PIXELS = 160
 # Inches.
 DISK, LEFT, HEADER, ROW, FOOTER = 1.42, 0.5, 0.85, 1.68, 0.35
 STEP = DISK * ASPECT
@@ -30,7 +30,7 @@ def views_figure(name, component, directions):
     """
     entries = directions[0].entries
     width = max(LEFT + STEP * len(entries) + 0.2, 6.0)
-    figure = Figure(figsize=(width, HEADER + ROW * len(directions) + FOOTER))
+    figure = Figure(figsize=(width, HEADER + ROW * len(directions) + FOOTER), dpi=style.DISKS_DPI)
     title(figure, f"{name},  {component}")
     height = figure.get_figheight()
     board = Board(figure)
@@ -45,5 +45,6 @@ def views_figure(name, component, directions):
             labels.below(disk, entry)
         y = 1.0 - (top + 0.5 * DISK) / height
         figure.text(0.12 / width, y, f"{text.degrees(direction.theta_deg)}°", fontsize=10, va="center")
-    caption(figure, f"colour by log(1 + √f), a scale for each row{labels.explanation(directions)}")
+    by = ", set by the simulation" if entries[0].model is None else ""
+    caption(figure, f"colour by log(1 + √f), a scale for each row{by}{labels.explanation(directions)}")
     return figure

@@ -4,9 +4,8 @@ from matplotlib import rc_context
 
 from ...writing import replacing
 
-DPI = 150
-
 STYLE = {
+    "figure.dpi": 150,
     "font.size": 9.0,
     "axes.edgecolor": "0.4",
     "axes.labelcolor": "0.2",
@@ -46,6 +45,6 @@ def write_figure(stem, suffixes, make, *arguments):
         for suffix in suffixes:
             path = stem.with_name(f"{stem.name}.{suffix}")
             with replacing(path) as temporary:
-                figure.savefig(temporary, format=suffix, dpi=DPI, metadata=_WITHOUT_DATE[suffix])
+                figure.savefig(temporary, format=suffix, dpi="figure", metadata=_WITHOUT_DATE[suffix])
             written.append(path)
     return written
