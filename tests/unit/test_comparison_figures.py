@@ -1,5 +1,7 @@
 """What the figures of a comparison show: every model in every direction, on the scale of the simulation."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -7,12 +9,11 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from goniosim.compare.measures import Error
 from goniosim.report.comparison import entries, labels, style
 from goniosim.report.comparison.direction import direction_figure
-from goniosim.report.comparison.figures import overviews, single_directions
 from goniosim.report.comparison.lobes import lobes_figure
 from goniosim.report.comparison.scale import FAINTEST, Scale
+from goniosim.report.comparison.sheets import overviews, single_directions
 from goniosim.report.comparison.views import views_figure
 from goniosim.report.drawing.directions import spread
 from goniosim.report.drawing.legend import caption, title
@@ -21,7 +22,7 @@ from synthetic import make_result
 INTERNAL = ("reflection/direct", "reflection/internal")
 
 
-def make_entry(label, model=None, options="", level=0.1, theta_deg=60.0, dirac=None, error=None, converged=True):
+def make_entry(label, model=None, options="", level=0.1, theta_deg=60.0, dirac=None, error="", converged=True):
     """An entry of constant BSDF, but for its Dirac cell."""
     result = make_result(theta_deg=(theta_deg,), channels=("R", "G", "B"), rows=18, columns=36)
     component = result.components["reflection/internal"]
@@ -42,17 +43,16 @@ def make_direction(*made, theta_deg=60.0):
     return entries.Direction(0, theta_deg, made[0][1], [entry for entry, _ in made])
 
 
-def error(rmse=0.02, significant=True):
-    return Error(rmse=rmse, stderr=0.003, upper=0.05, raw=0.03, noise_floor=0.01, significant=significant)
-
-
 @pytest.fixture
 def direction():
+    errors = [labels.error_text(0.02, 0.003, 0.05, *flags) for flags in ((True, True), (False, True), (True, False))]
     return make_direction(
         make_entry("simulation"),
-        make_entry("ww09", "ww09", level=5.0, error=error()),
-        make_entry("elek10", "elek10", error=error(significant=False)),
-        make_entry("bati19_ww[masking=correlated]", "bati19_ww", "masking=correlated", error=error(), converged=False),
+        make_entry("ww09", "ww09", level=5.0, error=errors[0]),
+        make_entry("elek10", "elek10", error=errors[1]),
+        make_entry(
+            "bati19_ww[masking=correlated]", "bati19_ww", "masking=correlated", error=errors[2], converged=False
+        ),
     )
 
 
@@ -177,3 +177,10 @@ def test_long_words_stay_inside_the_figure(width):
     for words in figure.texts:
         box = words.get_window_extent(renderer)
         assert box.x0 >= 0.0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0.0
+
+
+def test_drawing_needs_no_compiler():
+    """Processes that draw, and `goniosim plot`, start without it."""
+    script = "import sys, goniosim.report.integrated.figures, goniosim.report.comparison.sheets; print('numba' in sys.modules)"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert run.stdout == "False\n"

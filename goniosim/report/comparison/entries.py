@@ -5,9 +5,9 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ...compare.measures import rmse
 from ...result import Cells
 from ..drawing import inplane, panels, tone, view
+from . import labels
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +29,8 @@ class Entry:
         Where the curve is not mere noise, in 1/sr; 1 in the dark. A Dirac part does not count.
     dirac : int or None
         The cell that holds light leaving in exactly one direction.
-    error : goniosim.compare.measures.Error or None
-        Of the model in this direction.
+    error : str
+        RMSE of the model in this direction, if it was compared, in words.
     converged : bool
         Whether the sub-cells give the error.
     """
@@ -44,7 +44,7 @@ class Entry:
     sigma: np.ndarray
     highest: float
     dirac: int | None
-    error: object = None
+    error: str = ""
     converged: bool = True
 
 
@@ -95,6 +95,9 @@ def of_comparison(comparison, number):
     -------
     Direction
     """
+    # Only here: whoever draws does without the compiler that comes with it.
+    from ...compare.measures import rmse
+
     result, component = comparison.result, comparison.components[0]
     theta_deg = float(result.theta_deg[number])
     see = partial(_entry, result.cells, number, theta_deg, component)
@@ -103,8 +106,11 @@ def of_comparison(comparison, number):
         if found.component == component:
             variant = found.variant
             slices = {part: each for (label, part), each in comparison.slices.items() if label == variant.label}
-            error = {"error": rmse(found.measures, number), "converged": found.is_converged(number)}
-            entries.append(see(variant.label, variant.model, variant.options_text, slices, **error))
+            converged = found.is_converged(number)
+            error = rmse(found.measures, number)
+            words = labels.error_text(error.rmse, error.stderr, error.upper, error.significant, converged)
+            seen = see(variant.label, variant.model, variant.options_text, slices, error=words, converged=converged)
+            entries.append(seen)
     return Direction(number, theta_deg, result.cells, entries)
 
 

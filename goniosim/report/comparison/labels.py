@@ -44,14 +44,6 @@ def error_text(rmse, stderr, upper, significant, converged):
     return text.with_error(rmse, stderr) + ("" if converged else " *")
 
 
-def entry_error(entry):
-    """The error of an entry as `error_text`; empty for one without."""
-    error = entry.error
-    if error is None:
-        return ""
-    return error_text(error.rmse, error.stderr, error.upper, error.significant, entry.converged)
-
-
 def above(disk, entry):
     """Write the name of an entry above its view, the options of a second reading on a line of their own."""
     name = entry.label.rstrip("]").replace("[", "\n").replace(",", "\n")
@@ -60,12 +52,12 @@ def above(disk, entry):
 
 def below(disk, entry):
     """Write the error of an entry below its view."""
-    disk.below(entry_error(entry), fontsize=7)
+    disk.below(entry.error, fontsize=7)
 
 
 def explanation(directions):
     """What the numbers below the views are."""
-    errors = [entry for direction in directions for entry in direction.entries if entry.error is not None]
+    errors = [entry for direction in directions for entry in direction.entries if entry.error]
     if not errors:
         return ""
     words = "; below: RMSE of the direction [1/√sr] ± standard error"

@@ -5,7 +5,7 @@ from matplotlib.patches import Patch
 
 from ..drawing import panels
 from ..drawing.legend import LEGEND
-from . import labels, style
+from . import style
 
 # Inches.
 ENTRY_WIDTH, LINE_HEIGHT = 2.45, 0.19
@@ -81,7 +81,7 @@ def place_list(figure, left, top, width, entries):
     axes.set_axis_off()
     axes.set_xlim(0.0, width)
     axes.set_ylim(len(entries) + 0.5, -0.5)
-    if any(entry.error is not None for entry in entries):
+    if any(entry.error for entry in entries):
         axes.text(width, 0, "RMSE of this direction [1/√sr]", ha="right", **LIST_TEXT, color="0.3")
     for line, (entry, look) in enumerate(zip(entries, style.lines(entries), strict=True), 1):
         label = entry.label
@@ -90,7 +90,7 @@ def place_list(figure, left, top, width, entries):
             axes.fill_between([0.0, SAMPLE], line - 0.3, line + 0.3, color=style.BAND, linewidth=0.0)
         axes.plot([0.0, SAMPLE], [line, line], **look)
         axes.text(SAMPLE + 0.12, line, label, **LIST_TEXT)
-        axes.text(width, line, labels.entry_error(entry), ha="right", **LIST_TEXT, color="0.3")
+        axes.text(width, line, entry.error, ha="right", **LIST_TEXT, color="0.3")
 
 
 def _columns(figure_width):

@@ -11,6 +11,7 @@ from ...errors import UnusableResultError
 from ...scene.model import FileName
 from ...store import ModelsWriter, open_result, read_header
 from ...writing import make_folder
+from ..drawing.files import write_figure
 from ..drawing.studio import Studio
 from . import files
 from .figures import joint_figures, material_figures
@@ -128,5 +129,6 @@ class Report:
         files.write_csv(self._folder / files.CSV, rows, self._origin)
         files.write_json(self._folder / files.JSON, rows, self._origin, sources)
         if self._figures != "none":
-            self._studio.draw(joint_figures(self._summaries, self._folder / FIGURES))
+            for figure in joint_figures(self._summaries, self._folder / FIGURES):
+                write_figure(*figure)
         return ranking(self._summaries)

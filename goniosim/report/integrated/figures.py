@@ -9,7 +9,7 @@ from ...result import Cells, Component
 from ...scene.problems import closest
 from ...writing import make_folder
 from ..comparison import entries
-from ..comparison.figures import overviews, single_directions
+from ..comparison.sheets import overviews, single_directions
 from ..drawing import directions
 from ..drawing.files import write_figure
 from ..simulation.figures import draw as draw_result
