@@ -19,6 +19,7 @@ from goniosim.report.drawing.directions import spread
 from goniosim.report.drawing.legend import caption, title
 from synthetic import make_result
 
+MASKING = "masking=correlated"
 INTERNAL = ("reflection/direct", "reflection/internal")
 
 
@@ -50,9 +51,7 @@ def direction():
         make_entry("simulation"),
         make_entry("ww09", "ww09", level=5.0, error=errors[0]),
         make_entry("elek10", "elek10", error=errors[1]),
-        make_entry(
-            "bati19_ww[masking=correlated]", "bati19_ww", "masking=correlated", error=errors[2], converged=False
-        ),
+        make_entry(f"bati19_ww[{MASKING}]", "bati19_ww", MASKING, error=errors[2], converged=False),
     )
 
 
@@ -181,6 +180,9 @@ def test_long_words_stay_inside_the_figure(width):
 
 def test_drawing_needs_no_compiler():
     """Processes that draw, and `goniosim plot`, start without it."""
-    script = "import sys, goniosim.report.integrated.figures, goniosim.report.comparison.sheets; print('numba' in sys.modules)"
+    script = (
+        "import sys, goniosim.report.integrated.figures, goniosim.report.comparison.entries\n"
+        "print('numba' in sys.modules)"
+    )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert run.stdout == "False\n"

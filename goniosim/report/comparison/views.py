@@ -10,7 +10,7 @@ from .scale import Scale
 
 PIXELS = 160
 # Inches.
-DISK, LEFT, HEADER, ROW, FOOTER = 1.42, 0.5, 0.85, 1.68, 0.35
+DISK, LEFT, HEADER, ROW, FOOTER = 1.42, 0.5, 0.85, 1.68, 0.45
 STEP = DISK * ASPECT
 
 
