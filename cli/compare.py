@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from .policy import debug_option
+from .signals import tidied_up
 
 
 @click.command()
@@ -63,7 +64,8 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
 
     for path in passed_over:
         say(f"{path}: holds integrated models, not a result; stepped over")
-    with contextlib.closing(compare_report.Report(folder, request, subcells, figures)) as report:
+    made = compare_report.Report(folder, request, subcells, figures)
+    with tidied_up(), contextlib.closing(made) as report:
         for number, path in enumerate(paths, 1):
             report.add(path, lambda message, n=number: say(f"{n}/{len(paths)} {message}"))
         text = report.finish()

@@ -49,7 +49,7 @@ class Studio:
         if self._pool is None:
             return [path for figure in figures for path in write_figure(*figure)]
         try:
-            drawn = [self._pool.submit(write_figure, *figure) for figure in figures]
+            drawn = [self._pool.submit(_draw, *figure) for figure in figures]
             return [path for each in drawn for path in each.result()]
         except BrokenProcessPool as error:
             raise OutputError(
@@ -63,9 +63,17 @@ class Studio:
             self._pool.shutdown(wait=False, cancel_futures=True)
 
 
+_interrupted = threading.Event()
+
+
+def _draw(*figure):
+    # Some figures are on their way to this process when nobody waits for them any more.
+    return [] if _interrupted.is_set() else write_figure(*figure)
+
+
 def _prepare():
-    # Ctrl-C is for the process that waits.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Ctrl-C reaches every process at the terminal; a figure that was begun is finished and leaves nothing behind.
+    signal.signal(signal.SIGINT, lambda *_: _interrupted.set())
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
