@@ -127,6 +127,13 @@ def test_bands_leave_out_what_is_far_too_faint():
     assert levels[1] >= 0.5 * FAINTEST * 0.1
 
 
+def test_cells_without_a_value_are_explained(direction):
+    assert "cut by the horizon" not in " ".join(texts(direction_figure("plastic", "reflection/internal", direction)))
+    direction.cells.valid[:, -1] = False
+    for figure in (direction_figure("plastic", "c", direction), views_figure("plastic", "c", [direction])):
+        assert "grey: cells cut by the horizon" in " ".join(texts(figure)).replace("\n", " ")
+
+
 def test_black_slices_can_be_drawn():
     direction = make_direction(make_entry("simulation", level=0.0), make_entry("ww09", "ww09", level=0.0))
     assert direction.scaling.highest == 1.0

@@ -62,6 +62,6 @@ def direction_figure(name, component, direction):
         bar(axes, scale.bands)
         axes.set_title("1/sr", fontsize=8, pad=4)
     white = tone.label(float(f"{scale.white:.2g}"))
-    views = f"colour by log(1 + √f), white at {white} /sr, and luminance; rings at 30° and 60°"
+    views = f"colour by log(1 + √f), white at {white} /sr, and luminance; rings at 30° and 60°{scale.explanation}"
     caption(figure, f"Left: {half_disk.SCALE}.  Right: {views}{labels.explanation([direction])}.")
     return figure

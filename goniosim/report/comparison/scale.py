@@ -27,6 +27,11 @@ class Scale:
         self._slices = [panels.without_cell(entry.slices, entry.dirac) for entry in direction.entries]
         self._own = self._slices[direction.entries.index(direction.scaling)]
 
+    @property
+    def explanation(self):
+        """What grey cells are, if there are any."""
+        return "; grey: cells cut by the horizon" if (self._numbers == view.INVALID).any() else ""
+
     @cached_property
     def white(self):
         """BSDF shown at full brightness, in 1/sr."""

@@ -33,10 +33,9 @@ def views_figure(name, component, directions):
     figure = Figure(figsize=(width, HEADER + ROW * len(directions) + FOOTER), dpi=style.DISKS_DPI)
     title(figure, f"{name},  {component}")
     height = figure.get_figheight()
-    board = Board(figure)
-    for row, direction in enumerate(directions):
+    board, scales = Board(figure), [Scale(direction, PIXELS) for direction in directions]
+    for row, (direction, scale) in enumerate(zip(directions, scales, strict=True)):
         top = HEADER + ROW * row
-        scale = Scale(direction, PIXELS)
         for column, entry in enumerate(direction.entries):
             disk = board.disk(LEFT + column * STEP, top, DISK)
             scale.draw_colour(disk, entry)
@@ -46,5 +45,6 @@ def views_figure(name, component, directions):
         y = 1.0 - (top + 0.5 * DISK) / height
         figure.text(0.12 / width, y, f"{text.degrees(direction.theta_deg)}°", fontsize=10, va="center")
     by = ", set by the simulation" if entries[0].model is None else ""
-    caption(figure, f"colour by log(1 + √f), a scale for each row{by}{labels.explanation(directions)}")
+    grey = max((scale.explanation for scale in scales), key=len)
+    caption(figure, f"colour by log(1 + √f), a scale for each row{by}{grey}{labels.explanation(directions)}")
     return figure
