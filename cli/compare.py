@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from .policy import debug_option
+from .signals import tidied_up
 
 
 @click.command()
@@ -31,10 +32,17 @@ from .policy import debug_option
     show_default=True,
     help="Sub-cells along each side of a cell over which models are integrated.",
 )
+@click.option(
+    "--figures",
+    type=click.Choice(["all", "overview", "none"]),
+    default="all",
+    show_default=True,
+    help="Figures of each material: also one for each direction, only overviews, or none.",
+)
 @click.option("--allow-partial", is_flag=True, help="Accept results of interrupted simulations.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @debug_option
-def compare(results, models, output, settings, subcells, allow_partial, quiet):
+def compare(results, models, output, settings, subcells, figures, allow_partial, quiet):
     """Compare published models with the result file or folder of files RESULT_OR_FOLDER.
 
     Each model is integrated over the cells of the result, and its error is given without the noise
@@ -46,7 +54,7 @@ def compare(results, models, output, settings, subcells, allow_partial, quiet):
     from goniosim.report.comparison import report as compare_report
 
     request = check_request(_names(models), _options(settings))
-    paths = result_files(results)
+    paths, passed_over = result_files(results)
     compare_report.check_headers(paths, allow_partial)
     folder = Path(output or f"{Path(results).resolve().stem}-comparison")
 
@@ -54,7 +62,10 @@ def compare(results, models, output, settings, subcells, allow_partial, quiet):
         if not quiet:
             click.echo(message, err=True)
 
-    with contextlib.closing(compare_report.Report(folder, request, subcells)) as report:
+    for path in passed_over:
+        say(f"{path}: holds integrated models, not a result; stepped over")
+    made = compare_report.Report(folder, request, subcells, figures)
+    with tidied_up(), contextlib.closing(made) as report:
         for number, path in enumerate(paths, 1):
             report.add(path, lambda message, n=number: say(f"{n}/{len(paths)} {message}"))
         text = report.finish()

@@ -12,18 +12,36 @@ from .policy import debug_option
 def info(file, as_json):
     """Show what the result FILE holds.
 
-    Status, albedo of each component, energy audit, cost, effects simulated, origin.
+    Status, albedo of each component, energy audit, cost, effects simulated, origin. Of a file of
+    integrated models (models.h5): materials, models with their options, components, origin.
     """
     import json
     import os
 
     from goniosim.report import text
+    from goniosim.store import may_be_models_file
+
+    show = _models if may_be_models_file(file) else _result
+    if as_json:
+        click.echo(json.dumps(show(file, as_json), indent=1, allow_nan=False))
+    else:
+        description = show(file, as_json)
+        click.echo(f"{file}  ({text.size(os.path.getsize(file))})")
+        click.echo(description)
+
+
+def _result(file, as_json):
     from goniosim.report.simulation import summary
     from goniosim.store import open_result
 
     result = open_result(file)
-    if as_json:
-        click.echo(json.dumps(summary.as_data(result), indent=1, allow_nan=False))
-    else:
-        click.echo(f"{file}  ({text.size(os.path.getsize(file))})")
-        click.echo(summary.description(result))
+    return summary.as_data(result) if as_json else summary.description(result)
+
+
+def _models(file, as_json):
+    from goniosim.report.integrated import summary
+    from goniosim.store import open_models
+
+    with open_models(file) as models:
+        models.verify()
+        return summary.as_data(models) if as_json else summary.description(models)

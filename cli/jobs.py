@@ -4,7 +4,8 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-from goniosim.errors import DamagedFileError, ForeignFileError, OutputError, StoppedError
+from goniosim.errors import DamagedFileError, ForeignFileError, StoppedError
+from goniosim.writing import make_folder
 
 # Kernels from the cache load faster than this; a longer wait deserves a word.
 PATIENCE = 1.0
@@ -76,19 +77,6 @@ def plan(scenes, output, folder):
         # Room is kept only for the material at work: a killed study leaves a single hidden file behind.
         reserve_output(job.path, 0).release()
     return planned
-
-
-def make_folder(folder):
-    """Create a folder and those above it.
-
-    Raises
-    ------
-    OutputError
-    """
-    try:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{folder}: the folder cannot be created: {error.strerror}; choose another place") from error
 
 
 def run(jobs, progress, signals, verbose):

@@ -17,19 +17,49 @@ from .policy import debug_option
     help="File format.",
 )
 @click.option("--theta", type=float, multiple=True, help="Only this incident direction, in degrees; may be repeated.")
+@click.option(
+    "--material", "materials", multiple=True, metavar="NAME", help="Of models.h5: only this material; may be repeated."
+)
+@click.option(
+    "--model", "models", multiple=True, metavar="NAME", help="Of models.h5: this model alone; may be repeated."
+)
 @debug_option
-def plot(file, output, suffix, theta):
+def plot(file, output, suffix, theta, materials, models):
     """Draw the slices in the result FILE.
 
     An overview, and one figure per incident direction: each component is seen from above in colour and
     as bands of equal luminance, and along the plane of incidence with its noise.
+
+    Of a file of integrated models (models.h5): for each material lobes and views of all models side by
+    side, and one figure per direction if there are few materials or one is chosen by --material. With
+    --model that model alone, as a result is drawn.
     """
     from pathlib import Path
 
+    from goniosim.store import may_be_models_file
+
+    options = {"suffix": suffix, "theta_deg": theta or None}
+    if may_be_models_file(file):
+        draw = _draw_models
+        options |= {"materials": materials, "labels": models}
+    elif materials or models:
+        raise click.UsageError("--material and --model are for a file of integrated models (models.h5)")
+    else:
+        draw = _draw_result
+    for path in draw(file, Path(output), Path(file).stem, options):
+        click.echo(path)
+
+
+def _draw_result(file, folder, stem, options):
     from goniosim.report.simulation.figures import draw
     from goniosim.store import open_result
 
-    result = open_result(file)
-    written = draw(result, Path(output), Path(file).stem, suffix=suffix, theta_deg=theta or None)
-    for path in written:
-        click.echo(path)
+    return draw(open_result(file), folder, stem, **options)
+
+
+def _draw_models(file, folder, stem, options):
+    from goniosim.report.integrated.figures import draw
+    from goniosim.store import open_models
+
+    with open_models(file) as models:
+        yield from draw(models, folder, stem, **options)

@@ -1,14 +1,32 @@
 """Ctrl-C and SIGTERM: the first asks the simulation to stop, a second Ctrl-C ends it at once."""
 
+import contextlib
 import os
 import signal
 import threading
 import time
 
+from .policy import say_error
+
 # `timeout` and some batch systems deliver one signal twice: to the process and to its group.
 SAME_SIGNAL = 0.3
 
 NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
+
+
+@contextlib.contextmanager
+def tidied_up():
+    """While active, SIGTERM ends the command as an exception does, so that nothing unfinished stays behind."""
+
+    def end(signum, frame):
+        say_error(f"stopped by {NAMES[signum]}")
+        raise SystemExit(128 + signum)
+
+    earlier = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, earlier)
 
 
 class StopSignals:

@@ -147,3 +147,42 @@ def _cost(components, rays):
         cpu_seconds=traced / 5e6,
         error={path: 3 / np.sqrt(traced) for path in sampled},
     )
+
+
+MODELS = {
+    "ww09": {"model": "ww09", "options": ""},
+    "belcour18_forward[jacobian=snell]": {"model": "belcour18_forward", "options": "jacobian=snell"},
+}
+
+
+def write_models(path, materials=("synthetic",), **options):
+    """Write a file of integrated models whose slices are those of made-up results.
+
+    Parameters
+    ----------
+    path : path-like
+    materials : sequence of str
+    **options
+        Of `make_result`.
+
+    Returns
+    -------
+    dict of (str, str) to Result
+        By material and model: the result whose components were written.
+    """
+    from goniosim.store import ModelsWriter
+
+    made = {}
+    writer = ModelsWriter(path, {"created_utc": "2024-05-01T12:00:00Z", "goniosim_version": "0.1.0", "subcells": "5"})
+    try:
+        for number, name in enumerate(materials):
+            reference = make_result(name=name, **options)
+            main = next(each for each in ("transmission", "reflection/internal") if each in reference.components)
+            writer.add_material(reference, main)
+            for offset, (label, attributes) in enumerate(MODELS.items(), 1):
+                made[name, label] = make_result(name=name, seed=10 * number + 1 + offset, **options)
+                writer.add_model(reference, label, attributes, made[name, label].components)
+        writer.commit()
+    finally:
+        writer.discard()
+    return made

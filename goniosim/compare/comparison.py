@@ -9,7 +9,7 @@ from typing import Any
 from ..errors import ConfigError, UnusableResultError
 from ..integration import Pool
 from ..result import Result
-from ..store import open_result
+from ..store import is_models_file, open_result
 from .material import MaterialComparison, compare_material
 from .rows import material_rows
 from .variants import check_request
@@ -107,7 +107,7 @@ def compare(
     sources = [results] if isinstance(results, Result | str | os.PathLike) else results
     found: list[Result | Path] = []
     for source in sources:
-        found += [source] if isinstance(source, Result) else result_files(source)
+        found += [source] if isinstance(source, Result) else result_files(source)[0]
     materials: list[MaterialComparison] = []
     with Pool() as pool:
         for each in found:
@@ -151,17 +151,21 @@ def result_files(path: StrPath) -> list[Path]:
 
     Returns
     -------
-    list of Path
+    files : list of Path
+    passed_over : list of Path
+        Those in the folder that hold integrated models.
 
     Raises
     ------
     UnusableResultError
-        A folder without such files.
+        A folder without result files.
     """
     path = Path(os.fspath(path))
     if not path.is_dir():
-        return [path]
-    files = sorted(path.glob("*.h5"))
+        return [path], []
+    found = sorted(path.glob("*.h5"))
+    passed_over = [file for file in found if is_models_file(file)]
+    files = [file for file in found if file not in passed_over]
     if not files:
         raise UnusableResultError(f"{path}: holds no result files (*.h5); give a folder of results")
-    return files
+    return files, passed_over

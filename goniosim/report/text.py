@@ -42,6 +42,13 @@ def count(number):
     return f"{mantissa}e{int(exponent)}"
 
 
+def counts(rays):
+    """Format the numbers of rays of all directions: one number if they are equal."""
+    if rays.min() == rays.max():
+        return count(rays[0])
+    return f"between {count(rays.min())} and {count(rays.max())}"
+
+
 def rate(rays, per="s"):
     """Format a rate of rays: ``11.8 M rays/s``."""
     for unit, scale in (("G ", 1e9), ("M ", 1e6), ("k ", 1e3)):
@@ -105,6 +112,12 @@ def table(header, rows, indent="  ", gap="   "):
         ]
         lines.append((indent + gap.join(aligned)).rstrip())
     return lines
+
+
+def pairs(mapping):
+    """Lay out names and values in two columns, sorted by name."""
+    width = max(map(len, mapping), default=0)
+    return [f"  {name.ljust(width)}   {value}" for name, value in sorted(mapping.items())]
 
 
 def channel_groups(names, arrays):

@@ -3,17 +3,12 @@
 import contextlib
 import errno
 import os
-import secrets
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Self
 
 from goniosim.errors import OutputError
 from goniosim.store import userblock
-from goniosim.store.userblock import StrPath
-
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+from goniosim.writing import NO_ROOM, explained, remedy, temporary_beside
 
 
 class Reservation:
@@ -34,22 +29,20 @@ class Reservation:
         If the folder takes no new file.
     """
 
-    def __init__(self, target: Path, shown: StrPath) -> None:
+    def __init__(self, target, shown):
         self._target = target
         self._shown = shown
-        # Hidden and not ending in .h5, so that nobody takes it for a result; cut, since names are limited.
-        self._temporary = target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
+        self._temporary = temporary_beside(target)
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
         self._descriptor = os.open(self._temporary, flags, 0o666)
-        self._open = True
 
-    def __enter__(self) -> Self:
+    def __enter__(self):
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, *_):
         self.release()
 
-    def allocate(self, size_bytes: int) -> None:
+    def allocate(self, size_bytes):
         """Claim disk space.
 
         Parameters
@@ -69,10 +62,10 @@ class Reservation:
             os.posix_fallocate(self._descriptor, 0, max(1, size_bytes))
         except (AttributeError, OSError) as error:
             # Anything else means that this system or file system cannot allocate ahead.
-            if getattr(error, "errno", None) in _NO_ROOM:
+            if getattr(error, "errno", None) in NO_ROOM:
                 raise
 
-    def commit(self, parts: Sequence[bytes]) -> None:
+    def commit(self, parts):
         """Put the finished file in place: readers see the old file or the new one, never a mixture.
 
         Parameters
@@ -86,12 +79,9 @@ class Reservation:
             If the file cannot be written; the target is then as it was.
         """
         _refuse_to_destroy(self._target, self._shown)
-        try:
+        with explained(self._shown):
             _write(self._descriptor, parts)
             os.replace(self._temporary, self._target)
-        except OSError as error:
-            message = f"{self._shown}: cannot be written: {error.strerror}; {_remedy(error)}"
-            raise OutputError(message) from error
         # The name itself survives a power cut only after this. Some network file systems refuse it.
         with contextlib.suppress(OSError):
             folder = os.open(self._target.parent, os.O_RDONLY)
@@ -100,16 +90,16 @@ class Reservation:
             finally:
                 os.close(folder)
 
-    def release(self) -> None:
+    def release(self):
         """Close and remove the temporary file, if it is still there."""
-        if self._open:
-            self._open = False
+        if self._descriptor is not None:
             os.close(self._descriptor)
+            self._descriptor = None
             with contextlib.suppress(OSError):
                 os.unlink(self._temporary)
 
 
-def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
+def reserve_output(path, size_bytes):
     """Make sure, before a long computation, that its result can be written.
 
     Parameters
@@ -140,14 +130,14 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
         reservation = Reservation(target, path)
     except OSError as error:
         raise OutputError(
-            f"{path}: the folder {target.parent} takes no new file: {error.strerror}; {_remedy(error)}"
+            f"{path}: the folder {target.parent} takes no new file: {error.strerror}; {remedy(error)}"
         ) from error
     try:
         reservation.allocate(size_bytes)
     except OSError as error:
         reservation.release()
         raise OutputError(
-            f"{path}: no room for about {size_bytes / 1e6:.1f} MB: {error.strerror}; {_remedy(error)}"
+            f"{path}: no room for about {size_bytes / 1e6:.1f} MB: {error.strerror}; {remedy(error)}"
         ) from error
     except BaseException:
         reservation.release()
@@ -155,7 +145,7 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     return reservation
 
 
-def rescue(parts: Sequence[bytes], path: StrPath) -> str:
+def rescue(parts, path):
     """Save finished work in the temporary directory.
 
     Parameters
@@ -185,7 +175,7 @@ def rescue(parts: Sequence[bytes], path: StrPath) -> str:
     return f"the result was saved as {name} instead"
 
 
-def _refuse_to_destroy(target: Path, shown: StrPath) -> None:
+def _refuse_to_destroy(target, shown):
     if target.is_dir():
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
     if target.exists() and not userblock.is_result(target):
@@ -194,13 +184,7 @@ def _refuse_to_destroy(target: Path, shown: StrPath) -> None:
         )
 
 
-def _remedy(error: OSError) -> str:
-    if error.errno in _NO_ROOM:
-        return "free some space, raise the quota or the limit on file sizes, or choose another place"
-    return "check the permissions, or choose another place"
-
-
-def _write(descriptor: int, parts: Sequence[bytes]) -> None:
+def _write(descriptor, parts):
     """Write, cut to length and sync."""
     position = 0
     for part in parts:

@@ -1,24 +1,18 @@
 """From a result in memory to the bytes of a file, and onto the disk."""
 
 import uuid
-from collections.abc import Iterator, Mapping
-from typing import Any
 
 import h5py
 import numpy as np
 
 from goniosim.errors import OutputError
-from goniosim.result import Component, Result
 from goniosim.store import userblock
-from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCALES, SCHEMA_VERSION, Dataset, describe
-from goniosim.store.output import Reservation, rescue, reserve_output
-from goniosim.store.userblock import StrPath
-
-# Any HDF5 since 1.10 (2016) can read this format, and the bytes do not depend on the installed one.
-_FORMAT = ("v110", "v110")
+from goniosim.store.encoding import FORMAT, utf8, write_dataset, write_text
+from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, describe
+from goniosim.store.output import rescue, reserve_output
 
 
-def write_result(result: Result, path: StrPath, *, reservation: Reservation | None = None) -> None:
+def write_result(result, path, *, reservation=None):
     """Write a result file, whole or not at all.
 
     Parameters
@@ -49,7 +43,7 @@ def write_result(result: Result, path: StrPath, *, reservation: Reservation | No
         raise OutputError(f"{error}; {rescue(parts, path)}") from error
 
 
-def encode(result: Result) -> tuple[bytes, bytes]:
+def encode(result):
     """Bytes of a result file.
 
     Equal results give equal bytes: no clock and no random number goes in.
@@ -79,28 +73,31 @@ def encode(result: Result) -> tuple[bytes, bytes]:
         "rays": len(result.cost.rays),
     }
     with h5py.File(
-        uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=_FORMAT, userblock_size=userblock.SIZE
+        uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=FORMAT, userblock_size=userblock.SIZE
     ) as file:
-        # Scales come first in this order, so that datasets can be attached to them as they are made.
-        for path, values in _arrays(result):
-            _write_dataset(file, path, values, sizes)
+        for path, values in arrays(result):
+            entry = describe(path)
+            shape = tuple(sizes[dim] for dim in entry.dims)
+            if np.shape(values) != shape:
+                raise ValueError(f"{path} has shape {np.shape(values)}, not {shape}")
+            write_dataset(file, path, values, entry)
         for path, component in _components(result.components):
             file[path].attrs["contains_delta"] = np.int8(component.contains_delta)
-        _write_text(file["cells"], "parametrization", result.cells.parametrization)
+        write_text(file["cells"], "parametrization", result.cells.parametrization)
         effects = file.create_group("effects")
         for name, called_for in result.effects.items():
             effects.attrs[name] = np.int8(called_for)
         for name, value in attributes.items():
-            if isinstance(value, int):
+            if name == "seed":
                 file.attrs[name] = np.uint64(value)
             else:
-                _write_text(file, name, value)
+                write_text(file, name, value)
         file.flush()
         image = file.id.get_file_image()
     return userblock.make(image, attributes), image
 
 
-def _root_attributes(result: Result) -> dict[str, str | int]:
+def _root_attributes(result):
     if result.status not in ("complete", "partial"):
         raise ValueError(f"status is {result.status!r}, not 'complete' or 'partial'")
     missing = {"created_utc", "goniosim_version"} - result.provenance.keys()
@@ -117,15 +114,10 @@ def _root_attributes(result: Result) -> dict[str, str | int]:
         **result.provenance,
     }
     # What is hashed must be what a reader gets back.
-    return {"seed": int(result.seed), **{name: _utf8(text).decode() for name, text in texts.items()}}
+    return {"seed": int(result.seed), **{name: utf8(text).decode() for name, text in texts.items()}}
 
 
-def _utf8(text: str) -> bytes:
-    # A path or an argument from the shell may hold bytes that are not text: finished work is worth more.
-    return text.encode("utf-8", "backslashreplace").rstrip(b"\0")
-
-
-def _components(components: Mapping[str, Component], parent: str = "") -> Iterator[tuple[str, Component]]:
+def _components(components, parent=""):
     """Paths and components, orders after the component that they decompose."""
     for name, component in components.items():
         if not parent and name not in COMPONENTS:
@@ -134,8 +126,8 @@ def _components(components: Mapping[str, Component], parent: str = "") -> Iterat
         yield from _components(component.orders, f"{parent}{name}/")
 
 
-def _arrays(result: Result) -> Iterator[tuple[str, Any]]:
-    """Path and values of every dataset of the file."""
+def arrays(result):
+    """Path and values of every dataset of a result file, scales first."""
     cells = result.cells
     yield "direction", np.arange(len(result.theta_deg))
     yield "channel", result.channels
@@ -159,63 +151,5 @@ def _arrays(result: Result) -> Iterator[tuple[str, Any]]:
     yield "audit/direct_integrated_stderr", result.audit.direct_integrated_stderr
     for name in ("rays", "seconds", "cpu_seconds"):
         yield f"cost/{name}", getattr(result.cost, name)
-    for sampled, error in result.cost.error.items():
-        yield f"cost/error_{sampled.replace('/', '_')}", error
-
-
-def _write_dataset(file: h5py.File, path: str, values: Any, sizes: Mapping[str, int]) -> None:
-    entry = describe(path)
-    values = _stored(path, values, entry.dtype)
-    if values.shape != tuple(sizes[dim] for dim in entry.dims):
-        raise ValueError(f"{path} has shape {values.shape}, not {entry.dims} of {sizes}")
-
-    # HDF5 cannot chunk an empty dataset, and there is nothing in it to protect.
-    filters = {}
-    if values.size:
-        # One slice per chunk. Level 1: level 4 saves 1 % of Monte Carlo noise, shuffling 10 %.
-        chunks = (1,) * (values.ndim - 2) + values.shape[-2:]
-        filters = {"chunks": chunks, "fletcher32": True, "shuffle": True, "compression": 1}
-    dataset = file.create_dataset(path, data=values, track_times=False, **filters)
-
-    _write_text(dataset, "units", entry.unit)
-    _write_text(dataset, "long_name", entry.meaning)
-    if entry.dtype == "bool":
-        _write_text(dataset, "dtype", "bool")
-    if entry.dtype == "text":
-        _write_text(dataset, "_Encoding", "utf-8")
-    if entry.is_scale:
-        dataset.make_scale(entry.dims[0])
-    else:
-        for axis, dim in enumerate(entry.dims):
-            dataset.dims[axis].attach_scale(file[SCALES[dim]])
-        _link_coordinates(file, dataset, entry)
-
-
-def _link_coordinates(file: h5py.File, dataset: h5py.Dataset, entry: Dataset) -> None:
-    """Hard links to the coordinates of a dataset beside it, where xarray looks for them."""
-    coordinates = {dim: SCALES[dim] for dim in entry.dims}
-    if "direction" in entry.dims and dataset.parent.name != "/incident":
-        coordinates |= {name: f"incident/{name}" for name in ("theta_deg", "phi_deg")}
-        _write_text(dataset, "coordinates", "theta_deg phi_deg")
-    for name, target in coordinates.items():
-        if name not in dataset.parent:
-            dataset.parent[name] = file[target]
-
-
-def _stored(path: str, values: Any, dtype: str) -> np.ndarray:
-    """Values in the type that the file holds."""
-    if dtype == "text":
-        raw = [_utf8(text) for text in values]
-        return np.array(raw).astype(h5py.string_dtype("utf-8", max(1, *map(len, raw))))
-    if dtype == "bool":
-        return np.asarray(values).astype(bool, casting="safe").astype(np.int8)
-    values = np.asarray(values).astype(dtype, casting="safe", copy=False)
-    if not np.isfinite(values).all():
-        raise ValueError(f"{path} holds NaN or infinity")
-    return values
-
-
-def _write_text(node: h5py.Group | h5py.Dataset, name: str, text: str) -> None:
-    # Fixed length, because HDF5 keeps texts of variable length in a heap without a checksum.
-    raw = _utf8(text)
-    node.attrs.create(name, raw, dtype=h5py.string_dtype("utf-8", max(1, len(raw))))
+    for component, error in result.cost.error.items():
+        yield f"cost/error_{component.replace('/', '_')}", error

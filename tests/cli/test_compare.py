@@ -177,12 +177,26 @@ def test_models_h5_reads_like_results(report):
 
 def test_figures_are_there_in_both_formats_and_nothing_is_left_over(report):
     files = sorted(path.relative_to(report[0]).as_posix() for path in report[0].rglob("*") if path.is_file())
-    figures = ["cost", "errors", "metal-lobes", "metal-views", "synthetic-lobes", "synthetic-views"]
+    angles = {"metal": (0, 50), "synthetic": (0, 60)}
+    figures = ["cost", "errors", *(f"{name}-{kind}" for name in angles for kind in ("lobes", "views"))]
+    figures += [f"{name}-lobes-theta_{angle}" for name in angles for angle in angles[name]]
     expected = [f"figures/{name}.{suffix}" for name in figures for suffix in ("png", "svg")]
     assert files == sorted(["errors.csv", "errors.json", "models.h5", *expected])
     for name in expected:
         start = (report[0] / name).read_bytes()[:100]
         assert start.startswith(b"\x89PNG" if name.endswith("png") else b"<?xml")
+
+
+@pytest.mark.parametrize(("figures", "kinds"), [("overview", ["lobes", "views"]), ("none", [])])
+def test_fewer_figures(report, tmp_path, figures, kinds):
+    folder = tmp_path / "report"
+    metal = report[1] / "metal.h5"
+    code, _, err = run("compare", metal, "-o", folder, "--models", "ww09", "--subcells", "1", "--figures", figures)
+    joint = ["cost", "errors"] if kinds else []
+    expected = [f"{name}.{end}" for name in [*joint, *(f"metal-{kind}" for kind in kinds)] for end in ("png", "svg")]
+    assert code == 0 and ("drawing" in err) == bool(kinds)
+    assert sorted(path.name for path in (folder / "figures").iterdir()) == sorted(expected)
+    assert (folder / "models.h5").exists() and (folder / "errors.csv").exists()
 
 
 @pytest.fixture

@@ -5,7 +5,8 @@ import threading
 
 import pytest
 
-from goniosim.store import open_result
+from goniosim.store import open_result, write_result
+from synthetic import make_result
 
 # More than any machine traces during a test.
 FOREVER = "1e12"
@@ -111,3 +112,17 @@ def test_one_signal_delivered_twice_is_one(python, folder):
     process.send_signal(signal.SIGTERM)
     process.communicate(timeout=60)
     assert process.returncode == 99
+
+
+def test_a_comparison_that_is_stopped_leaves_nothing_unfinished(start, folder):
+    """Neither the hidden file of slices nor a process that draws."""
+    plastic = make_result(components=("reflection/direct", "reflection/internal"), rows=90, columns=360)
+    write_result(plastic, folder / "plastic.h5")
+    process = start("compare", "plastic.h5", "-o", "report", "--models", "ww09", "--subcells", "1")
+    _wait_for(process, "drawing")
+    process.send_signal(signal.SIGTERM)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 143
+    assert (out, err.strip()) == ("", "goniosim: stopped by SIGTERM")
+    left = [path.name for path in (folder / "report").rglob("*") if path.is_file()]
+    assert not any(name.startswith(".") or name in ("models.h5", "errors.csv") for name in left)

@@ -45,7 +45,7 @@ def test_vector_formats_are_the_same_every_time(tmp_path, suffix, start):
 
 def test_a_folder_that_cannot_be_created_is_an_output_error(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match="cannot be written"):
+    with pytest.raises(OutputError, match="the folder cannot be created"):
         draw(_result(), tmp_path / "file" / "folder", "stem")
 
 
@@ -63,5 +63,6 @@ def test_many_directions_fit_into_the_overview(tmp_path):
     from goniosim.report.simulation.overview import MOST, overview_figure
 
     figure = overview_figure(result)
-    # A disk and a curve for each direction shown, for reflection and transmission.
-    assert len(figure.axes) == 2 * 2 * MOST
+    # A curve and a disk for each direction shown, for reflection and transmission; all disks on one board.
+    board, *curves = figure.axes
+    assert len(curves) == len(board.images) == 2 * MOST

@@ -11,9 +11,12 @@ import xarray as xr
 
 from goniosim.result import AUDIT_ENTRIES
 from goniosim.store import layout, userblock, write_result
-from synthetic import make_result
+from goniosim.store.models import layout as models_layout
+from synthetic import make_result, write_models
 
 DOCUMENT = (Path(__file__).parents[2] / "data_schema.md").read_text(encoding="utf-8")
+MODELS = DOCUMENT[DOCUMENT.index("## The file of integrated models") : DOCUMENT.index("## Integrity")]
+RESULTS = DOCUMENT.replace(MODELS, "")
 
 
 @pytest.fixture(scope="module")
@@ -24,9 +27,9 @@ def path(tmp_path_factory):
     return path
 
 
-def rows(columns):
+def rows(columns, document=RESULTS):
     """Rows of the document's tables with that number of columns, without heads and rules."""
-    lines = [line.strip("| ") for line in DOCUMENT.splitlines() if line.startswith("| `")]
+    lines = [line.strip("| ") for line in document.splitlines() if line.startswith("| `")]
     found = [re.split(r" +\| +", line) for line in lines]
     return [row for row in found if len(row) == columns]
 
@@ -39,9 +42,8 @@ def walk(group, prefix=""):
             yield from walk(node, f"{prefix}{name}/")
 
 
-def test_the_document_lists_the_datasets_of_the_code():
-    documented = [tuple(row) for row in rows(5)]
-    expected = [
+def dataset_rows(datasets):
+    return [
         (
             f"`{dataset.path}`",
             f"[{', '.join(layout.SIZES[dim] for dim in dataset.dims)}]",
@@ -49,20 +51,30 @@ def test_the_document_lists_the_datasets_of_the_code():
             dataset.unit,
             dataset.meaning,
         )
-        for dataset in layout.DATASETS
+        for dataset in datasets
     ]
-    assert documented == expected
+
+
+def attribute_rows(attributes):
+    return [(f"`{a.group}`", f"`{a.name}`", a.dtype, a.meaning) for a in attributes]
+
+
+def test_the_document_lists_the_datasets_of_the_code():
+    assert [tuple(row) for row in rows(5)] == dataset_rows(layout.DATASETS)
+    assert [tuple(row) for row in rows(5, MODELS)] == dataset_rows(models_layout.DATASETS)
 
 
 def test_the_document_lists_the_attributes_of_the_code():
-    documented = [tuple(row) for row in rows(4)]
-    assert documented == [(f"`{a.group}`", f"`{a.name}`", a.dtype, a.meaning) for a in layout.ATTRIBUTES]
+    assert [tuple(row) for row in rows(4)] == attribute_rows(layout.ATTRIBUTES)
+    assert [tuple(row) for row in rows(4, MODELS)] == attribute_rows(models_layout.ATTRIBUTES)
 
 
 def test_the_document_names_the_version():
     assert DOCUMENT.startswith(f"# The result file, schema {layout.SCHEMA_VERSION}\n")
     assert DOCUMENT.splitlines()[-1].startswith(f"| {layout.SCHEMA_VERSION} | ")
     assert f"{userblock.MAGIC.decode()}{layout.SCHEMA_VERSION}\n" in DOCUMENT
+    versions = re.findall(r"^\| (\d\.\d) \| ", MODELS, re.MULTILINE)
+    assert versions[-1] == models_layout.SCHEMA_VERSION
 
 
 def test_every_dataset_of_a_file_is_described_and_the_reverse(path):
@@ -125,7 +137,7 @@ def test_each_dataset_finds_its_row():
             layout.describe(unknown)
 
 
-EXAMPLES = re.findall(r"```python\n(.*?)```", DOCUMENT, re.DOTALL)
+EXAMPLES = re.findall(r"```python\n(.*?)```", RESULTS, re.DOTALL)
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=["goniosim", "h5py", "xarray"])
@@ -174,3 +186,47 @@ def test_xarray_opens_the_rest(path):
         np.testing.assert_array_equal(tree["cost/seconds"].sel(rays=50_000).values, result.cost.seconds[1])
         assert tree.attrs["config_yaml"] == result.config_yaml
         assert tree["effects"].attrs["absorption"] == 1
+
+
+def test_every_piece_of_a_models_file_is_described_and_the_reverse(tmp_path):
+    """Datasets and attributes, each link by itself; what `MATERIAL/MODEL` shares is that of `MATERIAL`."""
+    write_models(tmp_path / "models.h5")
+    lengths = {"M": 2, "C": 3, "R": 6, "K": 8, "R + 1": 7, "K + 1": 9}
+    material, model = "synthetic", "belcour18_forward[jacobian=snell]"
+    datasets, attributes = set(), set()
+    with h5py.File(tmp_path / "models.h5") as file:
+        for path, node in [("", file), *walk(file)]:
+            below = path.removeprefix(material).removeprefix("/")
+            if below.startswith("ww09"):
+                continue
+            of_model = below == model or below.startswith(f"{model}/")
+            group = "MATERIAL/MODEL" if of_model else "MATERIAL"
+            below = below.removeprefix(model).removeprefix("/")
+            if isinstance(node, h5py.Group):
+                place = re.sub("reflection/direct|reflection/internal|transmission", "COMPONENT", below)
+                for name in node.attrs:
+                    name = "PROVENANCE" if path == "" and name == "subcells" else name
+                    attributes.add(("/" if path == "" else f"{group}/{place}".rstrip("/"), name))
+                continue
+            last = below.split("/")[-1]
+            coordinate = last if last in models_layout.COORDINATES else f"incident/{last}"
+            if last in (*models_layout.COORDINATES, "theta_deg", "phi_deg") and (of_model or below != coordinate):
+                assert node == file[material][coordinate], path
+                continue
+            if of_model and below.split("/")[0] in models_layout.FOLDERS:
+                assert node == file[material][below], path
+                continue
+            described = models_layout.describe(below)
+            datasets.add(f"{group}/{described.path}")
+            assert node.shape == tuple(lengths[layout.SIZES[dim]] for dim in described.dims), path
+            assert node.fletcher32 and node.attrs["units"].decode() == described.unit
+    assert datasets == {dataset.path for dataset in models_layout.DATASETS}
+    assert attributes == {(a.group, a.name) for a in models_layout.ATTRIBUTES}
+
+
+def test_the_example_of_the_models_file_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write_models("models.h5")
+    (example,) = re.findall(r"```python\n(.*?)```", MODELS, re.DOTALL)
+    exec(compile(example, "data_schema.md", "exec"), {})
+    assert capsys.readouterr().out.splitlines()[0] == "synthetic ww09 (2, 3, 6, 8)"

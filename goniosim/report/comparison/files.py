@@ -3,20 +3,46 @@
 import csv
 import io
 import json
-import os
-from pathlib import Path
 
 from ...compare.rows import COLUMNS
 from ...cores import available_cores
 from ...errors import OutputError
 from ...provenance import provenance
+from ...writing import explained, write_text
 
 FILETYPE = "goniosim-errors"
+CSV, JSON = "errors.csv", "errors.json"
+# How earlier files of these names begin.
+_BEGINNINGS = {CSV: ",".join(list(COLUMNS)[:3]), JSON: f'{{\n "filetype": "{FILETYPE}"'}
 
 
 def origin_of(subcells):
     """Who computed the errors, when and with what, as a dict of str to str."""
     return {**provenance(available_cores()), "subcells": str(subcells)}
+
+
+def check_replaceable(folder):
+    """Make sure, before anything is computed, that only tables of earlier comparisons will be replaced.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Raises
+    ------
+    OutputError
+    """
+    for name, beginning in _BEGINNINGS.items():
+        path = folder / name
+        if not path.exists():
+            continue
+        with explained(path), open(path, "rb") as stream:
+            found = stream.read(len(beginning))
+        if found != beginning.encode():
+            raise OutputError(
+                f"{path}: exists and is not a table of errors, so it is not overwritten; "
+                "write the report into another folder"
+            )
 
 
 def write_csv(path, rows, origin):
@@ -41,7 +67,7 @@ def write_csv(path, rows, origin):
     writer.writeheader()
     for row in rows:
         writer.writerow({name: _shown(value) for name, value in row.items()} | same)
-    _replace(path, stream.getvalue())
+    write_text(path, stream.getvalue())
 
 
 def write_json(path, rows, origin, sources):
@@ -62,20 +88,10 @@ def write_json(path, rows, origin, sources):
     }
     text = json.dumps(head, indent=1, allow_nan=False)
     lines = ",\n".join(json.dumps(row, allow_nan=False) for row in rows)
-    _replace(path, f'{text[:-2]},\n "errors": [\n{lines}\n ]\n}}\n')
+    write_text(path, f'{text[:-2]},\n "errors": [\n{lines}\n ]\n}}\n')
 
 
 def _shown(value):
     if value is None:
         return ""
     return f"{value:.9g}" if isinstance(value, float) else value
-
-
-def _replace(path, text):
-    """Write a text file whole or not at all."""
-    temporary = Path(path).with_name(f".{Path(path).name}.part")
-    try:
-        temporary.write_text(text, encoding="utf-8")
-        os.replace(temporary, path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another place") from error

@@ -1,4 +1,6 @@
-"""Short names of materials for the axis of a figure."""
+"""Words in figures: short names of materials, names and errors of models."""
+
+from .. import text
 
 
 def short_names(names):
@@ -22,3 +24,41 @@ def short_names(names):
         if len(set(short)) == len(set(names)):
             return [word or name for word, name in zip(short, names, strict=True)]
     return list(names)
+
+
+def error_text(rmse, stderr, upper, significant, converged):
+    """An RMSE with its standard error, or its upper limit; a star where sub-cells are too coarse.
+
+    Parameters
+    ----------
+    rmse, stderr, upper : float
+        In sr^(-1/2).
+    significant, converged : bool
+
+    Returns
+    -------
+    str
+    """
+    if not significant:
+        return f"below noise (< {upper:.1e})"
+    return text.with_error(rmse, stderr) + ("" if converged else " *")
+
+
+def above(disk, entry):
+    """Write the name of an entry above its view, the options of a second reading on a line of their own."""
+    name = entry.label.rstrip("]").replace("[", "\n").replace(",", "\n")
+    disk.above(name, fontsize=7.5)
+
+
+def below(disk, entry):
+    """Write the error of an entry below its view."""
+    disk.below(entry.error, fontsize=7)
+
+
+def explanation(directions):
+    """What the numbers below the views are."""
+    errors = [entry for direction in directions for entry in direction.entries if entry.error]
+    if not errors:
+        return ""
+    words = "; below: RMSE of the direction [1/√sr] ± standard error"
+    return words + ("" if all(entry.converged for entry in errors) else "; *: sub-cells too coarse, see errors.csv")

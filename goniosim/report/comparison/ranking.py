@@ -1,6 +1,7 @@
 """The ranking of the models as text."""
 
 from .. import text
+from .labels import error_text
 
 
 def ranking(summaries):
@@ -78,9 +79,7 @@ def _cells(summary, row, total):
 
 
 def _error(row):
-    if row["below_noise"]:
-        return f"below noise (< {row['rmse_upper']:.1e})"
-    return text.with_error(row["rmse"], row["rmse_stderr"]) + ("" if row["converged"] else " *")
+    return error_text(row["rmse"], row["rmse_stderr"], row["rmse_upper"], not row["below_noise"], row["converged"])
 
 
 def _converged(row):

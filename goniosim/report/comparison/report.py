@@ -1,14 +1,20 @@
 """The folder that a comparison writes: tables, integrated slices, figures; one material at a time."""
 
+import re
+
 from ...compare.comparison import check_usable
 from ...compare.material import compare_material
 from ...compare.summary import summarise
-from ...errors import OutputError, UnusableResultError
+from ...cores import available_cores
+from ...errors import UnusableResultError
 from ...integration import Pool
-from ...store import open_result, read_header
-from ...store.model_slices import ModelSlicesFile
+from ...scene.model import FileName
+from ...store import ModelsWriter, open_result, read_header
+from ...writing import make_folder
+from ..drawing.files import write_figure
+from ..drawing.studio import Studio
 from . import files
-from .figures import draw_joint, draw_material
+from .figures import joint_figures, material_figures
 from .ranking import ranking
 
 FIGURES = "figures"
@@ -25,7 +31,7 @@ def check_headers(paths, allow_partial):
     Raises
     ------
     UnusableResultError
-        A partial result, or two of the same name.
+        A partial result, one whose name is none for a file, or two of the same name.
     ForeignFileError, DamagedFileError, NewerSchemaError
         A file is not a result that can be read.
     """
@@ -37,6 +43,8 @@ def check_headers(paths, allow_partial):
                 f"{path}: the simulation was interrupted (partial); finish it, or use --allow-partial"
             )
         name = header["name"]
+        if not re.fullmatch(FileName.pattern, name):
+            raise UnusableResultError(f"{path}: no file can have the name of its material; simulate it under another")
         if name in names:
             raise UnusableResultError(
                 f"{path}: its material has the name {name}, as that of {names[name]}; rename one of them"
@@ -54,30 +62,31 @@ class Report:
     request : dict of str to dict
         From `goniosim.compare.variants.check_request`.
     subcells : int
+    figures : str
+        Which figures of each material, see `goniosim.report.comparison.figures.EXTENTS`.
 
     Raises
     ------
     OutputError
-        The folder cannot be written.
+        The folder cannot be written, or holds other files of the names that the report uses.
     """
 
-    def __init__(self, folder, request, subcells):
+    def __init__(self, folder, request, subcells, figures="all"):
         self._folder = folder
         self._request = request
         self._subcells = subcells
+        self._figures = figures
         self._summaries = []
         self._origin = files.origin_of(subcells)
-        try:
-            (folder / FIGURES).mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise OutputError(
-                f"{folder}: the folder cannot be created: {error.strerror}; choose another place"
-            ) from error
-        self._models = ModelSlicesFile(folder / "models.h5", self._origin)
+        make_folder(folder / FIGURES)
+        files.check_replaceable(folder)
+        self._models = ModelsWriter(folder / "models.h5", self._origin)
         self._pool = Pool()
+        self._studio = Studio(available_cores())
 
     def close(self):
         """Release what is open; an unfinished file of slices is removed."""
+        self._studio.close()
         self._pool.shutdown()
         self._models.discard()
 
@@ -94,13 +103,16 @@ class Report:
         check_usable(result, allow_partial=True)
         say(f"{result.name}: integrating the models")
         comparison = compare_material(result, self._request, self._subcells, self._pool)
-        self._models.add_material(result)
+        self._models.add_material(result, comparison.components[0])
         for variant in comparison.variants:
             slices = {part: one for (label, part), one in comparison.slices.items() if label == variant.label}
             attributes = {"model": variant.model, "options": variant.options_text}
             self._models.add_model(result, variant.label, attributes, slices)
-        say(f"{result.name}: drawing")
-        draw_material(comparison, self._folder / FIGURES)
+        figures = material_figures(comparison, self._folder / FIGURES, self._figures)
+        if figures:
+            say(f"{result.name}: drawing")
+            # Not while models are timed: both want all processors.
+            self._studio.draw(figures)
         self._summaries.append(summarise(comparison))
 
     def finish(self):
@@ -114,7 +126,9 @@ class Report:
         self._models.commit()
         rows = [row for summary in self._summaries for row in summary.rows]
         sources = [summary.source for summary in self._summaries]
-        files.write_csv(self._folder / "errors.csv", rows, self._origin)
-        files.write_json(self._folder / "errors.json", rows, self._origin, sources)
-        draw_joint(self._summaries, self._folder / FIGURES)
+        files.write_csv(self._folder / files.CSV, rows, self._origin)
+        files.write_json(self._folder / files.JSON, rows, self._origin, sources)
+        if self._figures != "none":
+            for figure in joint_figures(self._summaries, self._folder / FIGURES):
+                write_figure(*figure)
         return ranking(self._summaries)

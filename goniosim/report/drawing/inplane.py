@@ -100,6 +100,9 @@ def _joined(patches):
 
 
 def _join(group):
+    if len(group) == 1:
+        ((first, last, _, f, sigma),) = group
+        return 0.5 * (first + last), f, sigma
     firsts, lasts, sizes, f, sigma = zip(*group, strict=True)
     weights = np.array(sizes)[:, None] / sum(sizes)
     return (

@@ -1,21 +1,38 @@
 """The heading of a figure: its title, and one legend for all its panels."""
 
+import textwrap
+
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from . import panels
 
-# Inches.
-TITLE, LEGEND = 0.36, 0.5
-# Names longer than this are written smaller.
-LONG_TITLE = 60
+# Inches; letters are about so wide: a bold one of size 1, one of a caption.
+TITLE, LEGEND, CAPTION, LETTER, CAPTION_LETTER = 0.36, 0.5, 0.1, 0.0098, 0.064
+LARGEST = 14.0
 
 
 def title(figure, words):
-    """Write the title into the upper left corner."""
-    size = 14.0 * min(1.0, LONG_TITLE / len(words))
+    """Write the title into the upper left corner, as large as the figure is wide enough for."""
     width, height = figure.get_size_inches()
+    size = min(LARGEST, (width - 0.4) / (LETTER * len(words)))
     figure.text(0.2 / width, 1.0 - TITLE / height, words, fontsize=size, fontweight="bold")
+
+
+def caption(figure, words, middle=None):
+    """Write below everything, in as many lines as it takes.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    words : str
+    middle : float, optional
+        Where its middle stands, in inches from the left; in the middle of the figure by default.
+    """
+    width, height = figure.get_size_inches()
+    x = 0.5 if middle is None else middle / width
+    lines = textwrap.wrap(words, int((width - 0.3) / CAPTION_LETTER))
+    figure.text(x, CAPTION / height, "\n".join(lines), ha="center", va="bottom", fontsize=8.5, color="0.3")
 
 
 def add(figure, planes, invalid, dirac):

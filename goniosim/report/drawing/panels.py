@@ -1,14 +1,9 @@
-"""The panels of which figures are made: top view in colour, top view in bands, curve in the plane."""
+"""Curves in the plane of incidence, and what all panels share: colours, places, the Dirac part."""
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.patches import Circle, FancyArrowPatch
-from matplotlib.patheffects import withStroke
 
 from .. import text
-from . import tone, view
+from . import tone
 
 INVALID_GREY = (0.62, 0.62, 0.62)
 INK = "#333333"
@@ -28,11 +23,6 @@ CHANNEL_COLOURS = {
 OTHER_COLOURS = ("#333333", "#b8860b", "#7b3fa0", "#008b8b")
 BAND_SIGMAS = 2.0
 
-# Room around the unit disk, and the shape of the axes that follows from it.
-MARGIN, ARROW_TAIL = 1.04, 1.3
-DISK_ASPECT = (ARROW_TAIL + MARGIN) / (2.0 * MARGIN)
-DISK_CENTRE = ARROW_TAIL / (ARROW_TAIL + MARGIN)
-
 
 def place(figure, left, top, width, height):
     """Add axes to a figure, placed in inches from its upper left corner."""
@@ -40,56 +30,6 @@ def place(figure, left, top, width, height):
     return figure.add_axes(
         (left / full_width, 1.0 - (top + height) / full_height, width / full_width, height / full_height)
     )
-
-
-def top_view(axes, slices, numbers, theta_deg, white, spot=None):
-    """Draw a slice as the eye sees it from above, in remapped colours.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    slices : ndarray, shape (C, R, K)
-        BSDF in 1/sr.
-    numbers : ndarray of int64, shape (pixels, pixels)
-        From `view.disk`.
-    theta_deg : float
-        Where the light stands.
-    white : float
-        BSDF shown at full brightness, in 1/sr.
-    spot : ndarray of 3 floats, optional
-        Direction of a Dirac part, to be ringed: its cell may be too small to be seen.
-    """
-    _show(axes, tone.exposed(pixel_values(slices, numbers), white), numbers)
-    _furnish(axes, theta_deg, spot)
-
-
-def band_view(axes, slices, numbers, theta_deg, spot=None):
-    """Draw the luminance of a slice from above, in bands of false colours between round values.
-
-    Parameters
-    ----------
-    axes, slices, numbers, theta_deg, spot
-        As in `top_view`.
-
-    Returns
-    -------
-    matplotlib.cm.ScalarMappable or None
-        For the colour bar; None if the slice is black.
-    """
-    shown = tone.luminance(pixel_values(slices, numbers))
-    lit = shown[shown > 0.0]
-    scale = None
-    colours = np.zeros((*shown.shape, 3))
-    if lit.size:
-        levels = tone.levels(np.quantile(lit, 0.02), np.quantile(lit, 0.9995))
-        bands = ListedColormap(colormaps["turbo"](np.linspace(0.04, 0.96, len(levels) + 1)))
-        # One band below the first level and one above the last.
-        edges = [min(0.0, levels[0]), *levels, 1.5 * levels[-1]]
-        scale = ScalarMappable(BoundaryNorm(edges, bands.N), bands)
-        colours = scale.to_rgba(np.minimum(shown, 1.2 * levels[-1]))[..., :3]
-    _show(axes, colours, numbers)
-    _furnish(axes, theta_deg, spot)
-    return scale
 
 
 def curves(axes, channels, angle, f, sigma, sampled):
@@ -164,54 +104,6 @@ def without_cell(slices, number):
     return copy if copy.any() else slices
 
 
-def pixel_values(slices, numbers):
-    """BSDF of every pixel, shape (pixels, pixels, C); zero where there is no valid cell."""
-    by_cell = slices.reshape(len(slices), -1).T
-    return np.where(numbers[..., None] >= 0, by_cell[np.maximum(numbers, 0)], 0.0)
-
-
 def channel_colour(name, c):
     """Colour of the line of a group of channels whose first is number ``c``."""
     return CHANNEL_COLOURS.get(name, OTHER_COLOURS[c % len(OTHER_COLOURS)])
-
-
-def _show(axes, colours, numbers):
-    image = np.dstack([colours, numbers != view.OUTSIDE])
-    image[numbers == view.INVALID, :3] = INVALID_GREY
-    axes.imshow(image, extent=(-1.0, 1.0, -1.0, 1.0), interpolation="antialiased")
-
-
-def _furnish(axes, theta_deg, spot):
-    """Rim, rings at 30 and 60 degrees, the light as an arrow outside and a ring where it stands."""
-    axes.set_axis_off()
-    axes.set_xlim(-ARROW_TAIL, MARGIN)
-    axes.set_ylim(-MARGIN, MARGIN)
-    for ring in (30.0, 60.0):
-        axes.add_patch(Circle((0, 0), np.sin(np.radians(ring)), fill=False, color="white", alpha=0.35, linewidth=0.6))
-    axes.add_patch(Circle((0, 0), 1.0, fill=False, color=INK, linewidth=1.2))
-    if spot is not None:
-        axes.plot([-spot[0]], [-spot[1]], "o", markersize=9, markerfacecolor="none", color=DIRAC, clip_on=False)
-    where = -np.sin(np.radians(theta_deg))
-    axes.plot(
-        [where],
-        [0.0],
-        "o",
-        markersize=7,
-        markerfacecolor="none",
-        color=LIGHT,
-        markeredgewidth=1.5,
-        path_effects=[withStroke(linewidth=2.8, foreground=INK)],
-    )
-    if theta_deg > 0.0:
-        axes.add_patch(
-            FancyArrowPatch(
-                (-ARROW_TAIL, 0.0),
-                (-1.03, 0.0),
-                arrowstyle="simple,head_length=6,head_width=8,tail_width=2.5",
-                facecolor=LIGHT,
-                edgecolor=INK,
-                linewidth=0.7,
-                shrinkA=0.0,
-                shrinkB=0.0,
-            )
-        )

@@ -83,7 +83,7 @@ def levels(low, high, most=12):
     -------
     ndarray
         Ascending, at least one: evenly spaced for a narrow range, otherwise the densest of the
-        series 1-2-5, 1-3 and 1 per decade that has not too many.
+        series 1-1.5-2-3-5-7, 1-2-5, 1-3 and 1 per decade that has not too many.
     """
     if high < 1.2 * low:
         digit = 10.0 ** np.floor(np.log10(low))
@@ -92,7 +92,7 @@ def levels(low, high, most=12):
         values = MaxNLocator(nbins=most - 1, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         return values[values > 0.0][:most]
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
-    for series in ([1, 2, 5], [1, 3], [1]):
+    for series in ([1, 1.5, 2, 3, 5, 7], [1, 2, 5], [1, 3], [1]):
         values = np.outer(decades, series).ravel()
         values = values[(values >= low) & (values <= high)]
         if len(values) <= most:

@@ -63,6 +63,12 @@ def disk(cells, direction, theta_deg, pixels):
     return cell_numbers(cells, direction, theta_deg, np.stack([-right, -up, height], axis=-1))
 
 
+def pixel_values(slices, numbers):
+    """BSDF of every pixel, shape (pixels, pixels, C); zero where there is no valid cell."""
+    by_cell = slices.reshape(len(slices), -1).T
+    return np.where(numbers[..., None] >= 0, by_cell[np.maximum(numbers, 0)], 0.0)
+
+
 def centre(cells, theta_deg, number):
     """Direction of the centre of a cell.
 

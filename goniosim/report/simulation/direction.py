@@ -3,19 +3,20 @@
 from matplotlib.figure import Figure
 
 from .. import text
-from ..drawing import inplane, legend, panels, tone, view
-from . import audit
+from ..drawing import bands, inplane, legend, panels, tone, view
+from ..drawing.disks import Board
 
 PIXELS = 600
 
 # Inches.
 WIDTH, HEADER, ROW = 12.0, 1.0, 3.1
 TOP_VIEW, BAND_VIEW, BAR, PLANE = 0.1, 2.75, 5.4, 6.75
-DISK_WIDTH, DISK_HEIGHT, PLANE_WIDTH = 2.34 * panels.DISK_ASPECT, 2.34, 5.05
+DISK_HEIGHT, PLANE_WIDTH = 2.34, 5.05
 
 TITLES = {
     "reflection/direct": "Reflection, direct",
     "reflection/internal": "Reflection, internal paths",
+    "reflection": "Reflection",
     "transmission": "Transmission, mirrored to the upper side",
 }
 
@@ -38,14 +39,17 @@ def direction_figure(result, i):
     figure = Figure(figsize=(WIDTH, HEADER + ROW * len(result.components)))
     title = f"{result.name},  light at {text.degrees(theta_deg)}°"
     legend.title(figure, title)
-    planes = [_row(figure, HEADER + ROW * n, result, i, name, numbers) for n, name in enumerate(result.components)]
+    board = Board(figure)
+    planes = [
+        _row(figure, board, HEADER + ROW * n, result, i, name, numbers) for n, name in enumerate(result.components)
+    ]
     planes[-1].set_xlabel("view angle in the plane of incidence [deg], light on the left")
     dirac = any(component.contains_delta for component in result.components.values())
     legend.add(figure, planes, invalid=bool((numbers == view.INVALID).any()), dirac=dirac)
     return figure
 
 
-def _row(figure, top, result, i, name, numbers):
+def _row(figure, board, top, result, i, name, numbers):
     theta_deg = float(result.theta_deg[i])
     component = result.components[name]
     slices, stderr = component.bsdf[i], component.bsdf_stderr[i]
@@ -58,21 +62,18 @@ def _row(figure, top, result, i, name, numbers):
     spot = None if dirac is None else view.centre(result.cells, theta_deg, dirac)
     scaling = panels.without_cell(slices, dirac)
 
-    colour = panels.place(figure, TOP_VIEW, top, DISK_WIDTH, DISK_HEIGHT)
-    white = tone.white_point(panels.pixel_values(scaling, numbers)[numbers >= 0])
-    panels.top_view(colour, slices, numbers, theta_deg, white, spot)
-    _under(colour, f"colour, full scale {tone.label(float(f'{white:.2g}'))} /sr; rings at 30° and 60°")
+    disk = board.disk(TOP_VIEW, top, DISK_HEIGHT)
+    white = tone.white_point(view.pixel_values(scaling, numbers)[numbers >= 0])
+    disk.colour(slices, numbers, theta_deg, white, spot)
+    disk.below(f"colour, full scale {tone.label(float(f'{white:.2g}'))} /sr; rings at 30° and 60°", fontsize=8.5)
 
-    bands = panels.place(figure, BAND_VIEW, top, DISK_WIDTH, DISK_HEIGHT)
-    scale = panels.band_view(bands, slices, numbers, theta_deg, spot)
-    _under(bands, "luminance [1/sr]")
+    disk = board.disk(BAND_VIEW, top, DISK_HEIGHT)
+    lit = bands.extent(slices, numbers)
+    scale = bands.scale(*lit) if lit else None
+    disk.bands(slices, numbers, theta_deg, scale, spot)
+    disk.below("luminance [1/sr]", fontsize=8.5)
     if scale is not None:
-        bar = figure.colorbar(scale, cax=panels.place(figure, BAR, top + 0.12, 0.14, DISK_HEIGHT - 0.24))
-        levels = scale.norm.boundaries[1:-1]
-        bar.set_ticks(levels, labels=[tone.label(level) for level in levels])
-        bar.minorticks_off()
-        bar.ax.tick_params(length=0, labelsize=8)
-        bar.outline.set_visible(False)
+        bands.bar(panels.place(figure, BAR, top + 0.12, 0.14, DISK_HEIGHT - 0.24), scale)
 
     plane = panels.place(figure, PLANE, top + 0.05, PLANE_WIDTH, DISK_HEIGHT - 0.05)
     angle, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, slices, stderr)
@@ -83,14 +84,10 @@ def _row(figure, top, result, i, name, numbers):
     return plane
 
 
-def _under(axes, caption):
-    axes.text(0.0, -1.07, caption, ha="center", va="top", fontsize=8.5, color="0.3")
-
-
 def _caption(result, i, name):
     """Albedo per channel, how noisy a cell is, and whether there is a Dirac part."""
-    value, _ = audit.albedos(result)[name]
     component = result.components[name]
+    value = component.energy.sum(axis=(2, 3))
     groups = text.channel_groups(result.channels, [value[i : i + 1]])
     parts = ["albedo  " + "  ".join(f"{label} {value[i, c]:.3g}" for label, c in groups)]
     energy = component.energy[i].sum()

@@ -5,11 +5,11 @@ from matplotlib.figure import Figure
 
 from ...result import Component
 from .. import text
-from ..drawing import inplane, legend, panels, tone, view
+from ..drawing import directions, disks, inplane, legend, panels, tone, view
 
 PIXELS = 400
 
-# More directions than this would make unreadable pictures; some evenly picked ones stand for all.
+# Of more directions, some stand for all.
 MOST = 9
 NARROWEST = 10.5
 
@@ -33,22 +33,20 @@ def overview_figure(result):
     matplotlib.figure.Figure
     """
     n = len(result.theta_deg)
-    shown = sorted(set(np.linspace(0, n - 1, min(n, MOST)).round().astype(int).tolist()))
+    shown = directions.spread(n, MOST)
     sides = [side for side in TITLES if any(name.startswith(side) for name in result.components)]
     width = max(LEFT + COLUMN * len(shown), NARROWEST)
     figure = Figure(figsize=(width, HEADER + ROW * len(sides) + FOOTER))
     legend.title(figure, result.name + (f"  ({len(shown)} of {n} directions)" if len(shown) < n else ""))
     numbers = [view.disk(result.cells, i, float(result.theta_deg[i]), PIXELS) for i in shown]
+    board = disks.Board(figure)
     planes = []
     for row, side in enumerate(sides):
-        planes += _row(figure, HEADER + ROW * row, result, side, shown, numbers)
-    figure.text(
-        (LEFT + 0.5 * COLUMN * (len(shown) - 1) + 0.5 * PLANE_WIDTH) / width,
-        0.15 / figure.get_figheight(),
+        planes += _row(figure, board, HEADER + ROW * row, result, side, shown, numbers)
+    legend.caption(
+        figure,
         "view angle in the plane of incidence [deg], light on the left; scales by log(1 + √f), one for each direction",
-        ha="center",
-        fontsize=8.5,
-        color="0.3",
+        middle=LEFT + 0.5 * COLUMN * (len(shown) - 1) + 0.5 * PLANE_WIDTH,
     )
     invalid = any(bool((each == view.INVALID).any()) for each in numbers)
     dirac = any(component.contains_delta for component in result.components.values())
@@ -56,7 +54,7 @@ def overview_figure(result):
     return figure
 
 
-def _row(figure, top, result, side, shown, numbers):
+def _row(figure, board, top, result, side, shown, numbers):
     width, height = figure.get_size_inches()
     figure.text(0.2 / width, 1.0 - top / height, TITLES[side], fontsize=10.5, fontweight="bold")
     total = _sum([component for name, component in result.components.items() if name.startswith(side)])
@@ -64,10 +62,10 @@ def _row(figure, top, result, side, shown, numbers):
     for column, (i, each) in enumerate(zip(shown, numbers, strict=True)):
         theta_deg = float(result.theta_deg[i])
         left = LEFT + COLUMN * column
-        disk = panels.place(figure, left - 0.22, top + 0.3, DISK_WIDTH, DISK_WIDTH / panels.DISK_ASPECT)
+        disk = board.disk(left - 0.22, top + 0.3, DISK_WIDTH / disks.ASPECT)
         plane = panels.place(figure, left, top + PLANE_TOP, PLANE_WIDTH, PLANE_HEIGHT)
         _column(disk, plane, result, total, i, each)
-        disk.set_title(f"{text.degrees(theta_deg)}°", fontsize=10, x=panels.DISK_CENTRE, pad=2)
+        disk.above(f"{text.degrees(theta_deg)}°", fontsize=10)
         plane.set_xticks([-60, 0, 60])
         plane.tick_params(labelsize=7.5)
         planes.append(plane)
@@ -81,8 +79,8 @@ def _column(disk, plane, result, total, i, numbers):
     dirac = panels.dirac_cell(total, i)
     spot = None if dirac is None else view.centre(result.cells, theta_deg, dirac)
     scaling = panels.without_cell(slices, dirac)
-    white = tone.white_point(panels.pixel_values(scaling, numbers)[numbers >= 0])
-    panels.top_view(disk, slices, numbers, theta_deg, white, spot)
+    white = tone.white_point(view.pixel_values(scaling, numbers)[numbers >= 0])
+    disk.colour(slices, numbers, theta_deg, white, spot)
     angle, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, slices, stderr)
     panels.curves(plane, result.channels, angle, f, sigma, sampled=total.hits is not None)
     _, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, stderr)

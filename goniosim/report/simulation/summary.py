@@ -52,7 +52,7 @@ def description(result):
     if absent:
         effects.append(f"  not called for: {', '.join(absent)}")
     left_out = losses.left_out_lines(result)
-    origin = ["Origin", *_pairs(result.provenance)]
+    origin = ["Origin", *text.pairs(result.provenance)]
     return "\n\n".join([summary(result), *("\n".join(lines) for lines in (effects, left_out, origin))])
 
 
@@ -64,7 +64,7 @@ def heading_lines(result):
         f"{result.name}  ({result.status})",
         f"  incident theta [deg]: {', '.join(map(text.degrees, result.theta_deg))}",
         f"  {slices}, channels {', '.join(result.channels)}",
-        f"  rays per direction: {_rays(result.rays)}, seed {result.seed}",
+        f"  rays per direction: {text.counts(result.rays)}, seed {result.seed}",
     ]
     for name, component in result.components.items():
         if component.contains_delta:
@@ -122,14 +122,3 @@ def _lists(value):
     if isinstance(value, dict):
         return {name: array.tolist() for name, array in value.items()}
     return value.tolist()
-
-
-def _rays(rays):
-    if rays.min() == rays.max():
-        return text.count(rays[0])
-    return f"between {text.count(rays.min())} and {text.count(rays.max())}"
-
-
-def _pairs(mapping):
-    width = max(map(len, mapping), default=0)
-    return [f"  {name.ljust(width)}   {value}" for name, value in sorted(mapping.items())]

@@ -1,0 +1,56 @@
+"""The checksums of a dataset, held against the bytes on the disk: much faster than decompressing them."""
+
+import numpy as np
+
+_MODULUS = 65535
+# Words in one sum of sums: it stays far below 2^64.
+_BLOCK = 1 << 20
+_LENGTH = 4
+
+
+def verify(dataset):
+    """Check every chunk of a dataset.
+
+    Parameters
+    ----------
+    dataset : h5py.Dataset
+        With the filter fletcher32, which HDF5 applies last.
+
+    Raises
+    ------
+    ValueError
+        A chunk is missing, or does not match its checksum.
+    """
+    if not dataset.fletcher32:
+        raise ValueError(f"the dataset {dataset.name} has no checksums")
+    present = dataset.id.get_num_chunks()
+    expected = int(np.prod([-(-length // chunk) for length, chunk in zip(dataset.shape, dataset.chunks, strict=True)]))
+    if present != expected:
+        raise ValueError(f"the dataset {dataset.name} has {present} of {expected} chunks")
+    for number in range(present):
+        skipped, raw = dataset.id.read_direct_chunk(dataset.id.get_chunk_info(number).chunk_offset)
+        stored = int.from_bytes(raw[-_LENGTH:], "little")
+        low, high = fletcher32(raw[:-_LENGTH])
+        if skipped or (stored & 0xFFFF) % _MODULUS != low or (stored >> 16) % _MODULUS != high:
+            raise ValueError(f"the dataset {dataset.name} does not match its checksums")
+
+
+def fletcher32(raw):
+    """Fletcher's checksum as HDF5 computes it: over big-endian words of 16 bits, an odd byte in front of a zero.
+
+    Parameters
+    ----------
+    raw : bytes
+
+    Returns
+    -------
+    low, high : int
+        Sum of the words, and sum of the sums so far, both modulo 65535.
+    """
+    words = np.frombuffer(raw + b"\0" * (len(raw) % 2), dtype=">u2").astype(np.uint64)
+    low, high = 0, 0
+    for start in range(0, len(words), _BLOCK):
+        sums = np.cumsum(words[start : start + _BLOCK])
+        high = (high + len(sums) * low + int(sums.sum())) % _MODULUS
+        low = (low + int(sums[-1])) % _MODULUS
+    return low, high

@@ -1,0 +1,127 @@
+"""Putting files into place, whole or not at all, and saying why when that fails."""
+
+import contextlib
+import errno
+import os
+import secrets
+from pathlib import Path
+
+from .errors import OutputError
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def make_folder(folder):
+    """Create a folder and those above it.
+
+    Parameters
+    ----------
+    folder : path-like
+
+    Raises
+    ------
+    OutputError
+    """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: the folder cannot be created: {error.strerror}; choose another place") from error
+
+
+def temporary_beside(target):
+    """Name for a file that will be renamed to ``target``.
+
+    Hidden and without its ending, so that nobody takes it for the finished file; cut, since names are limited.
+    """
+    return target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
+
+
+def remedy(error):
+    """What to do about an error of the operating system."""
+    if error.errno in NO_ROOM:
+        return "free some space, raise the quota or the limit on file sizes, or choose another place"
+    return "check the permissions, or choose another place"
+
+
+@contextlib.contextmanager
+def explained(path):
+    """Turn what the operating system says about writing ``path`` into an `OutputError` of one line."""
+    try:
+        yield
+    except OSError as error:
+        # The errors of HDF5 have a text, but no number.
+        reason = error.strerror or " ".join(str(error).split())
+        raise OutputError(f"{path}: cannot be written: {reason}; {remedy(error)}") from error
+
+
+class Replacement:
+    """A file in the making, beside the one that it will replace.
+
+    Parameters
+    ----------
+    path : path-like
+        A link stays a link: the file it names is the one to replace.
+
+    Attributes
+    ----------
+    temporary : Path
+        Where to write.
+    """
+
+    def __init__(self, path):
+        self._path = path
+        self._target = Path(os.path.realpath(path))
+        self.temporary = temporary_beside(self._target)
+
+    def commit(self):
+        """Put the finished file in place: readers see the old file or the new one, never a mixture."""
+        with explained(self._path):
+            os.replace(self.temporary, self._target)
+
+    def discard(self):
+        """Remove what was written, unless it was committed."""
+        with contextlib.suppress(OSError):
+            os.unlink(self.temporary)
+
+
+@contextlib.contextmanager
+def replacing(path):
+    """Write a file under another name, which becomes ``path`` if all goes well.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Yields
+    ------
+    Path
+        Where to write.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written; an earlier one is then as it was.
+    """
+    replacement = Replacement(path)
+    try:
+        with explained(path):
+            yield replacement.temporary
+        replacement.commit()
+    finally:
+        replacement.discard()
+
+
+def write_text(path, text):
+    """Write a text file, whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+    text : str
+
+    Raises
+    ------
+    OutputError
+    """
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
