@@ -4,14 +4,17 @@ import contextlib
 import errno
 import os
 import secrets
+from collections.abc import Iterator
 from pathlib import Path
 
 from .errors import OutputError
 
+StrPath = str | os.PathLike[str]
+
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-def make_folder(folder):
+def make_folder(folder: StrPath) -> None:
     """Create a folder and those above it.
 
     Parameters
@@ -28,7 +31,7 @@ def make_folder(folder):
         raise OutputError(f"{folder}: the folder cannot be created: {error.strerror}; choose another place") from error
 
 
-def temporary_beside(target):
+def temporary_beside(target: Path) -> Path:
     """Name for a file that will be renamed to ``target``.
 
     Hidden and without its ending, so that nobody takes it for the finished file; cut, since names are limited.
@@ -36,7 +39,7 @@ def temporary_beside(target):
     return target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
 
 
-def remedy(error):
+def remedy(error: OSError) -> str:
     """What to do about an error of the operating system."""
     if error.errno in NO_ROOM:
         return "free some space, raise the quota or the limit on file sizes, or choose another place"
@@ -44,7 +47,7 @@ def remedy(error):
 
 
 @contextlib.contextmanager
-def explained(path):
+def explained(path: StrPath) -> Iterator[None]:
     """Turn what the operating system says about writing ``path`` into an `OutputError` of one line."""
     try:
         yield
@@ -68,24 +71,24 @@ class Replacement:
         Where to write.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: StrPath) -> None:
         self._path = path
         self._target = Path(os.path.realpath(path))
         self.temporary = temporary_beside(self._target)
 
-    def commit(self):
+    def commit(self) -> None:
         """Put the finished file in place: readers see the old file or the new one, never a mixture."""
         with explained(self._path):
             os.replace(self.temporary, self._target)
 
-    def discard(self):
+    def discard(self) -> None:
         """Remove what was written, unless it was committed."""
         with contextlib.suppress(OSError):
             os.unlink(self.temporary)
 
 
 @contextlib.contextmanager
-def replacing(path):
+def replacing(path: StrPath) -> Iterator[Path]:
     """Write a file under another name, which becomes ``path`` if all goes well.
 
     Parameters
@@ -111,7 +114,7 @@ def replacing(path):
         replacement.discard()
 
 
-def write_text(path, text):
+def write_text(path: StrPath, text: str) -> None:
     """Write a text file, whole or not at all.
 
     Parameters

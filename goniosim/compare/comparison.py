@@ -10,13 +10,13 @@ from ..errors import ConfigError, UnusableResultError
 from ..integration import Pool
 from ..result import Result
 from ..store import is_models_file, open_result
+from ..writing import StrPath
 from .material import MaterialComparison, compare_material
 from .rows import material_rows
 from .variants import check_request
 
 MAX_SUBCELLS = 99
 
-StrPath = str | os.PathLike[str]
 Source = Result | StrPath
 
 
@@ -141,7 +141,7 @@ def check_usable(result: Result, allow_partial: bool) -> None:
         raise UnusableResultError(f"{result.name}: has incident directions without a single ray; simulate it again")
 
 
-def result_files(path: StrPath) -> list[Path]:
+def result_files(path: StrPath) -> tuple[list[Path], list[Path]]:
     """Result files that a path stands for.
 
     Parameters

@@ -1,15 +1,17 @@
 """How datasets and texts are put into HDF5: the same for results and for integrated models."""
 
+from typing import Any
+
 import h5py
 import numpy as np
 
-from goniosim.store.layout import SCALES
+from goniosim.store.layout import SCALES, Dataset
 
 # Any HDF5 since 1.10 (2016) can read this format, and the bytes do not depend on the installed one.
 FORMAT = ("v110", "v110")
 
 
-def write_dataset(root, path, values, entry):
+def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> None:
     """Write a dataset with its units, scales and coordinates.
 
     Scales come first, so that the datasets that use them can be attached as they are made.
@@ -51,7 +53,7 @@ def write_dataset(root, path, values, entry):
         _link_coordinates(root, path, dataset, entry)
 
 
-def _link_coordinates(root, path, dataset, entry):
+def _link_coordinates(root: h5py.Group, path: str, dataset: h5py.Dataset, entry: Dataset) -> None:
     """Hard links to the coordinates of a dataset beside it, where xarray looks for them."""
     coordinates = {dim: SCALES[dim] for dim in entry.dims}
     if "direction" in entry.dims and not path.startswith("incident/"):
@@ -62,7 +64,7 @@ def _link_coordinates(root, path, dataset, entry):
             dataset.parent[name] = root[target]
 
 
-def stored(path, values, dtype):
+def stored(path: str, values: Any, dtype: str) -> np.ndarray:
     """Values in the type that the file holds."""
     if dtype == "text":
         raw = [utf8(text) for text in values]
@@ -75,13 +77,13 @@ def stored(path, values, dtype):
     return values
 
 
-def utf8(text):
+def utf8(text: str) -> bytes:
     """Bytes of a text, as a file holds them."""
     # A path or an argument from the shell may hold bytes that are not text: finished work is worth more.
     return text.encode("utf-8", "backslashreplace").rstrip(b"\0")
 
 
-def write_text(node, name, text):
+def write_text(node: h5py.Group | h5py.Dataset, name: str, text: str) -> None:
     """Set a text attribute of a group or dataset."""
     # Fixed length, because HDF5 keeps texts of variable length in a heap without a checksum.
     raw = utf8(text)

@@ -4,11 +4,13 @@ import contextlib
 import errno
 import os
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Self
 
 from goniosim.errors import OutputError
 from goniosim.store import userblock
-from goniosim.writing import NO_ROOM, explained, remedy, temporary_beside
+from goniosim.writing import NO_ROOM, StrPath, explained, remedy, temporary_beside
 
 
 class Reservation:
@@ -29,20 +31,21 @@ class Reservation:
         If the folder takes no new file.
     """
 
-    def __init__(self, target, shown):
+    def __init__(self, target: Path, shown: StrPath) -> None:
         self._target = target
         self._shown = shown
         self._temporary = temporary_beside(target)
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
         self._descriptor = os.open(self._temporary, flags, 0o666)
+        self._open = True
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.release()
 
-    def allocate(self, size_bytes):
+    def allocate(self, size_bytes: int) -> None:
         """Claim disk space.
 
         Parameters
@@ -65,7 +68,7 @@ class Reservation:
             if getattr(error, "errno", None) in NO_ROOM:
                 raise
 
-    def commit(self, parts):
+    def commit(self, parts: Sequence[bytes]) -> None:
         """Put the finished file in place: readers see the old file or the new one, never a mixture.
 
         Parameters
@@ -90,16 +93,16 @@ class Reservation:
             finally:
                 os.close(folder)
 
-    def release(self):
+    def release(self) -> None:
         """Close and remove the temporary file, if it is still there."""
-        if self._descriptor is not None:
+        if self._open:
+            self._open = False
             os.close(self._descriptor)
-            self._descriptor = None
             with contextlib.suppress(OSError):
                 os.unlink(self._temporary)
 
 
-def reserve_output(path, size_bytes):
+def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     """Make sure, before a long computation, that its result can be written.
 
     Parameters
@@ -145,7 +148,7 @@ def reserve_output(path, size_bytes):
     return reservation
 
 
-def rescue(parts, path):
+def rescue(parts: Sequence[bytes], path: StrPath) -> str:
     """Save finished work in the temporary directory.
 
     Parameters
@@ -175,7 +178,7 @@ def rescue(parts, path):
     return f"the result was saved as {name} instead"
 
 
-def _refuse_to_destroy(target, shown):
+def _refuse_to_destroy(target: Path, shown: StrPath) -> None:
     if target.is_dir():
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
     if target.exists() and not userblock.is_result(target):
@@ -184,7 +187,7 @@ def _refuse_to_destroy(target, shown):
         )
 
 
-def _write(descriptor, parts):
+def _write(descriptor: int, parts: Sequence[bytes]) -> None:
     """Write, cut to length and sync."""
     position = 0
     for part in parts:

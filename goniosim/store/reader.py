@@ -2,6 +2,8 @@
 
 import contextlib
 import re
+from collections.abc import Callable, Iterator
+from typing import Any, BinaryIO
 
 import h5py
 
@@ -11,11 +13,12 @@ from goniosim.store import userblock
 from goniosim.store.decoding import attributes, cells, decoding, find, find_shaped, values
 from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, SCALES, describe
 from goniosim.store.models.reader import is_models_file
+from goniosim.writing import StrPath
 
 _ORDER = re.compile(r"order_(\d+)(?:_and_more)?")
 
 
-def open_result(path):
+def open_result(path: StrPath) -> Result:
     """Read a result file and check every byte of it.
 
     Parameters
@@ -44,7 +47,7 @@ def open_result(path):
             return _result(file)
 
 
-def read_header(path):
+def read_header(path: StrPath) -> dict[str, str | int]:
     """Read the root attributes of a result file, without its data.
 
     The attributes are checked against their digest and the file against its
@@ -73,7 +76,7 @@ def read_header(path):
         return found
 
 
-def _user_block(stream, path):
+def _user_block(stream: BinaryIO, path: StrPath) -> userblock.UserBlock:
     try:
         return userblock.read(stream, path)
     except ForeignFileError:
@@ -86,7 +89,7 @@ def _user_block(stream, path):
 
 
 @contextlib.contextmanager
-def _hdf5(stream, path):
+def _hdf5(stream: BinaryIO, path: StrPath) -> Iterator[h5py.File]:
     """The HDF5 part of an open file; whatever HDF5 or h5py trips over is damage.
 
     Reading through the stream that was verified leaves no moment in which
@@ -97,10 +100,10 @@ def _hdf5(stream, path):
         yield file
 
 
-def _result(file):
+def _result(file: h5py.File) -> Result:
     sizes = {dim: len(find(file, scale)) for dim, scale in SCALES.items()}
 
-    def read(path):
+    def read(path: str) -> Any:
         entry = describe(path)
         return values(find_shaped(file, path, entry, sizes), entry)
 
@@ -131,7 +134,7 @@ def _result(file):
     )
 
 
-def _component(file, path, read):
+def _component(file: h5py.File, path: str, read: Callable[[str], Any]) -> Component:
     orders = sorted((int(match[1]), match[0]) for match in map(_ORDER.fullmatch, file[path]) if match)
     return Component(
         energy=read(f"{path}/energy"),
@@ -144,7 +147,7 @@ def _component(file, path, read):
     )
 
 
-def _cost(file, read):
+def _cost(file: h5py.File, read: Callable[[str], Any]) -> Cost:
     errors = {component: f"cost/error_{component.replace('/', '_')}" for component in COMPONENTS}
     return Cost(
         rays=read("cost/rays"),

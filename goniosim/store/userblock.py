@@ -10,7 +10,6 @@ form in every version of the schema.
 import hashlib
 import io
 import json
-import os
 import re
 import stat
 import zlib
@@ -21,8 +20,7 @@ from typing import BinaryIO
 
 from goniosim.errors import DamagedFileError, ForeignFileError, GoniosimError, NewerSchemaError
 from goniosim.store.layout import SCHEMA_VERSION
-
-StrPath = str | os.PathLike[str]
+from goniosim.writing import StrPath
 
 SIZE = 512
 MAGIC = b"goniosim result, schema "

@@ -1,18 +1,22 @@
 """From a result in memory to the bytes of a file, and onto the disk."""
 
 import uuid
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import h5py
 import numpy as np
 
 from goniosim.errors import OutputError
+from goniosim.result import Component, Result
 from goniosim.store import userblock
 from goniosim.store.encoding import FORMAT, utf8, write_dataset, write_text
 from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, describe
-from goniosim.store.output import rescue, reserve_output
+from goniosim.store.output import Reservation, rescue, reserve_output
+from goniosim.writing import StrPath
 
 
-def write_result(result, path, *, reservation=None):
+def write_result(result: Result, path: StrPath, *, reservation: Reservation | None = None) -> None:
     """Write a result file, whole or not at all.
 
     Parameters
@@ -43,7 +47,7 @@ def write_result(result, path, *, reservation=None):
         raise OutputError(f"{error}; {rescue(parts, path)}") from error
 
 
-def encode(result):
+def encode(result: Result) -> tuple[bytes, bytes]:
     """Bytes of a result file.
 
     Equal results give equal bytes: no clock and no random number goes in.
@@ -88,7 +92,7 @@ def encode(result):
         for name, called_for in result.effects.items():
             effects.attrs[name] = np.int8(called_for)
         for name, value in attributes.items():
-            if name == "seed":
+            if isinstance(value, int):
                 file.attrs[name] = np.uint64(value)
             else:
                 write_text(file, name, value)
@@ -97,7 +101,7 @@ def encode(result):
     return userblock.make(image, attributes), image
 
 
-def _root_attributes(result):
+def _root_attributes(result: Result) -> dict[str, str | int]:
     if result.status not in ("complete", "partial"):
         raise ValueError(f"status is {result.status!r}, not 'complete' or 'partial'")
     missing = {"created_utc", "goniosim_version"} - result.provenance.keys()
@@ -117,7 +121,7 @@ def _root_attributes(result):
     return {"seed": int(result.seed), **{name: utf8(text).decode() for name, text in texts.items()}}
 
 
-def _components(components, parent=""):
+def _components(components: Mapping[str, Component], parent: str = "") -> Iterator[tuple[str, Component]]:
     """Paths and components, orders after the component that they decompose."""
     for name, component in components.items():
         if not parent and name not in COMPONENTS:
@@ -126,7 +130,7 @@ def _components(components, parent=""):
         yield from _components(component.orders, f"{parent}{name}/")
 
 
-def arrays(result):
+def arrays(result: Result) -> Iterator[tuple[str, Any]]:
     """Path and values of every dataset of a result file, scales first."""
     cells = result.cells
     yield "direction", np.arange(len(result.theta_deg))
@@ -151,5 +155,5 @@ def arrays(result):
     yield "audit/direct_integrated_stderr", result.audit.direct_integrated_stderr
     for name in ("rays", "seconds", "cpu_seconds"):
         yield f"cost/{name}", getattr(result.cost, name)
-    for component, error in result.cost.error.items():
-        yield f"cost/error_{component.replace('/', '_')}", error
+    for sampled, error in result.cost.error.items():
+        yield f"cost/error_{sampled.replace('/', '_')}", error

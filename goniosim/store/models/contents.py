@@ -4,6 +4,7 @@ Whatever is not as described raises a ValueError or a LookupError, see `goniosim
 """
 
 import hashlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import h5py
@@ -65,7 +66,7 @@ class MaterialEntry:
     models: tuple[ModelEntry, ...]
 
 
-def read_material(group, name, version):
+def read_material(group: h5py.Group, name: str, version: str) -> MaterialEntry:
     """Read what describes a material, and make sure that the slices of its models are there.
 
     Parameters
@@ -102,7 +103,7 @@ def read_material(group, name, version):
     )
 
 
-def listed(group, name, version):
+def listed(group: h5py.Group, name: str, version: str) -> tuple[str, ...]:
     """Names that an attribute lists, each of a group that is there."""
     if version == "1.0":
         # It had no lists, and nothing beside what was compared.
@@ -118,7 +119,7 @@ def listed(group, name, version):
     return names
 
 
-def _model(group, label, sizes):
+def _model(group: h5py.Group, label: str, sizes: Mapping[str, int]) -> ModelEntry:
     found = {}
     for component in COMPONENTS:
         if f"{component}/{VALUES[0]}" in group:
@@ -131,7 +132,7 @@ def _model(group, label, sizes):
     return ModelEntry(label, text(group, "model"), text(group, "options"), found)
 
 
-def _main_component(group, models, version):
+def _main_component(group: h5py.Group, models: Sequence[ModelEntry], version: str) -> str:
     if version == "1.0":
         present = {name for model in models for name in model.components}
         return next((name for name in ("transmission", *COMPONENTS[1:]) if name in present), "")

@@ -7,7 +7,7 @@ A test holds `data_schema.md` against this table.
 from dataclasses import replace
 
 from goniosim.store import layout
-from goniosim.store.layout import Attribute
+from goniosim.store.layout import Attribute, Dataset
 
 FILETYPE = "goniosim-models"
 SCHEMA_VERSION = "1.1"
@@ -52,7 +52,7 @@ ATTRIBUTES = (
 NOT_PROVENANCE = ("filetype", "schema_version", "materials")
 
 
-def describe(path):
+def describe(path: str) -> Dataset:
     """Find the row of the table of results that describes a dataset.
 
     Parameters

@@ -1,6 +1,7 @@
 """Reading integrated models, one at a time: a study holds more than fits into memory."""
 
 import contextlib
+from collections.abc import Iterator
 
 import h5py
 
@@ -9,8 +10,9 @@ from goniosim.result import Component
 from goniosim.store import userblock
 from goniosim.store.decoding import attributes, decoding, plain, text, values
 from goniosim.store.models import checksums
-from goniosim.store.models.contents import listed, read_material
+from goniosim.store.models.contents import MaterialEntry, ModelEntry, listed, read_material
 from goniosim.store.models.layout import FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, VALUES, describe
+from goniosim.writing import StrPath
 
 REMEDY = "restore it from a copy or compare again"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -28,7 +30,7 @@ class ModelsFile:
         Names, in the order of comparison.
     """
 
-    def __init__(self, path, file):
+    def __init__(self, path: StrPath, file: h5py.File) -> None:
         self._path = path
         self._file = file
         header = attributes(file)
@@ -38,7 +40,7 @@ class ModelsFile:
         }
         self.materials = listed(file, "materials", self.schema_version)
 
-    def material(self, name):
+    def material(self, name: str) -> MaterialEntry:
         """Read what describes a material, and make sure that the slices of its models are there.
 
         Parameters
@@ -57,7 +59,7 @@ class ModelsFile:
         with decoding(self._path, REMEDY):
             return read_material(self._file[name], name, self.schema_version)
 
-    def slices(self, material, model, component=""):
+    def slices(self, material: MaterialEntry, model: ModelEntry, component: str = "") -> dict[str, Component]:
         """Read the slices of a model.
 
         Parameters
@@ -87,7 +89,7 @@ class ModelsFile:
                 if name.startswith(component)
             }
 
-    def verify(self):
+    def verify(self) -> None:
         """Hold every dataset against its checksums: seconds for a gigabyte.
 
         Raises
@@ -95,7 +97,7 @@ class ModelsFile:
         DamagedFileError
         """
 
-        def check(_, node):
+        def check(_: str, node: h5py.Group | h5py.Dataset) -> None:
             # What a user added has perhaps no checksum, and is no concern of ours.
             if isinstance(node, h5py.Dataset) and node.fletcher32:
                 checksums.verify(node)
@@ -106,7 +108,7 @@ class ModelsFile:
 
 
 @contextlib.contextmanager
-def open_models(path):
+def open_models(path: StrPath) -> Iterator[ModelsFile]:
     """Open a file of integrated models, for a ``with`` statement.
 
     Parameters
@@ -144,17 +146,17 @@ def open_models(path):
         yield opened
 
 
-def is_models_file(path):
+def is_models_file(path: StrPath) -> bool:
     """Whether an existing file holds integrated models, of whatever version; False if it cannot be read."""
     return _filetype(path) == FILETYPE
 
 
-def may_be_models_file(path):
+def may_be_models_file(path: StrPath) -> bool:
     """As `is_models_file`, but True also for an HDF5 file too damaged to tell: results start differently."""
     return _filetype(path) in (FILETYPE, _UNREADABLE)
 
 
-def _filetype(path):
+def _filetype(path: StrPath) -> object:
     try:
         with userblock.open_regular(path) as stream:
             if stream.read(len(_SIGNATURE)) != _SIGNATURE:
@@ -168,7 +170,7 @@ def _filetype(path):
         return None
 
 
-def _foreign(path):
+def _foreign(path: StrPath) -> ForeignFileError:
     return ForeignFileError(
         f"{path}: is not a file of integrated models; name a models.h5 that `goniosim compare` wrote"
     )

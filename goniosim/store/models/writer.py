@@ -3,17 +3,19 @@
 import contextlib
 import hashlib
 import os
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 from goniosim.errors import OutputError
+from goniosim.result import Component, Result
 from goniosim.store.encoding import FORMAT, utf8, write_dataset, write_text
 from goniosim.store.models.layout import COORDINATES, FILETYPE, FOLDERS, SCHEMA_VERSION, SHARED, VALUES, describe
 from goniosim.store.models.reader import is_models_file
 from goniosim.store.writer import arrays
-from goniosim.writing import Replacement, explained
+from goniosim.writing import Replacement, StrPath, explained
 
 _SHARED_PATHS = {entry.path for entry in SHARED}
 _MANTISSA_BITS = 52
@@ -36,18 +38,18 @@ class ModelsWriter:
         The file cannot be written.
     """
 
-    def __init__(self, path, provenance):
+    def __init__(self, path: StrPath, provenance: Mapping[str, str]) -> None:
         _refuse_to_destroy(path)
         self._path = path
         self._replacement = Replacement(path)
-        self._materials = {}
-        self._places = {}
+        self._materials: dict[str, list[str]] = {}
+        self._places: dict[bytes, str] = {}
         with self._explained():
             self._file = h5py.File(self._replacement.temporary, "w", libver=FORMAT)
             for name, text in {"filetype": FILETYPE, "schema_version": SCHEMA_VERSION, **provenance}.items():
                 write_text(self._file, name, text)
 
-    def commit(self):
+    def commit(self) -> None:
         """Put the finished file in place."""
         with self._explained():
             write_text(self._file, "materials", "\n".join(self._materials))
@@ -58,14 +60,14 @@ class ModelsWriter:
                 os.fsync(stream.fileno())
         self._replacement.commit()
 
-    def discard(self):
+    def discard(self) -> None:
         """Close and remove the file, unless it was committed."""
         # A full disk makes closing fail too; the file goes anyway.
         with contextlib.suppress(OSError, RuntimeError):
             self._file.close()
         self._replacement.discard()
 
-    def add_material(self, result, main_component):
+    def add_material(self, result: Result, main_component: str) -> None:
         """Make the group of a material with its cells and directions.
 
         Parameters
@@ -87,7 +89,9 @@ class ModelsWriter:
                     write_dataset(group, path, values, describe(path))
             write_text(group["cells"], "parametrization", result.cells.parametrization)
 
-    def add_model(self, result, label, attributes, slices):
+    def add_model(
+        self, result: Result, label: str, attributes: Mapping[str, str], slices: Mapping[str, Component]
+    ) -> None:
         """Add the slices of one model.
 
         Parameters
@@ -124,7 +128,7 @@ class ModelsWriter:
                 group[path].attrs["contains_delta"] = np.int8(component.contains_delta)
 
     @contextlib.contextmanager
-    def _explained(self):
+    def _explained(self) -> Iterator[None]:
         with explained(self._path):
             try:
                 yield
@@ -133,7 +137,7 @@ class ModelsWriter:
                 raise OSError(str(error)) from error
 
 
-def _refuse_to_destroy(path):
+def _refuse_to_destroy(path: StrPath) -> None:
     if Path(path).exists() and not is_models_file(path):
         raise OutputError(
             f"{path}: exists and is not a file of integrated models, so it is not overwritten; "
@@ -141,7 +145,7 @@ def _refuse_to_destroy(path):
         )
 
 
-def _link_shared(material, group):
+def _link_shared(material: h5py.Group, group: h5py.Group) -> None:
     """Hard links to everything shared: the group then reads like the root of a result file."""
     for name in COORDINATES:
         group[name] = material[name]
@@ -152,7 +156,7 @@ def _link_shared(material, group):
     write_text(group["cells"], "parametrization", material["cells"].attrs["parametrization"].decode())
 
 
-def _rounded(values):
+def _rounded(values: np.ndarray) -> np.ndarray:
     """Values with the lowest bits of their mantissa zero, rounded to nearest."""
     bits = np.ascontiguousarray(values).view(np.uint64)
     dropped = _MANTISSA_BITS - _KEPT_BITS + 1
