@@ -157,7 +157,7 @@ def test_lines_that_nearly_agree_are_told_apart_and_unknown_models_have_a_colour
     widths = [look["linewidth"] for look in looks[1:]]
     assert widths == sorted(widths, reverse=True) and len(set(widths)) == len(widths)
     stranger, _ = make_entry("new21", "new21")
-    assert style.lines([stranger])[0]["color"] == style.OTHERS
+    assert style.lines([stranger])[0]["color"] == style.UNKNOWN_COLOUR
 
 
 def test_errors_in_words():
