@@ -4,7 +4,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo install test test-all bench clean
+# The study of the paper: rays per incident direction, and the folder of its results.
+RAYS ?= 5e7
+PAPER := out/paper
+
+.PHONY: demo install test test-all bench paper paper-report clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -25,6 +29,33 @@ test-all: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py
+
+# Files that are finished with just these rays are left alone; with another RAYS all are simulated anew.
+paper: $(STAMP)
+	$(BIN)/goniosim simulate configs/paper/plastics.yaml --rays $(RAYS) -o $(PAPER)
+	$(BIN)/goniosim simulate configs/paper/metals.yaml --rays $(RAYS) -o $(PAPER)
+	$(BIN)/goniosim simulate configs/paper/slabs.yaml --rays $(RAYS) -o $(PAPER)
+	$(MAKE) paper-report
+
+# What is derived from the results: a make of its own, which sees the files that are there by now.
+MODEL_CODE := $(shell find goniosim/models goniosim/compare goniosim/integration -name '*.py' 2>/dev/null)
+STUDY_CODE := $(shell find benchmarks/paper_study -name '*.py')
+COMPARED := $(PAPER)/comparison/.done
+VARIED := $(PAPER)/experiments.csv
+WRITTEN := $(PAPER)/.written
+
+paper-report: $(WRITTEN)
+
+$(COMPARED): $(wildcard $(PAPER)/*.h5) $(MODEL_CODE)
+	$(BIN)/goniosim compare $(PAPER) -o $(PAPER)/comparison
+	touch $@
+
+$(VARIED): $(COMPARED) $(wildcard benchmarks/paper_study/experiments/*.py)
+	$(BIN)/python -m benchmarks.paper_study $(PAPER) --experiments
+
+$(WRITTEN): $(VARIED) $(STUDY_CODE)
+	$(BIN)/python -m benchmarks.paper_study $(PAPER)
+	touch $@
 
 clean:
 	rm -rf $(VENV) out build *.egg-info
