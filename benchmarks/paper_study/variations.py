@@ -8,6 +8,8 @@ from .materials import parse
 from .verdicts import YES, overall
 
 METALS = {"4": rough_base.claims, "5": smooth_base.claims, "6": eq5.claims}
+# The slab whose lobe is measured, that of Fig. 9 but for the colour.
+WIDE = (0.001, 0.2)
 SLABS = {"9 (growth)": slabs.claims}
 
 
@@ -39,7 +41,8 @@ def text(study):
             "RMSE of frosted metals (M2, α₁ = 0.001) under the same options:",
             _frosted(found[metal_options.NAME]),
             "### Slabs: other readings of Belcour's model",
-            f"{' and '.join(slab_options.LABELS)}, RMSE by α₀/α₁.",
+            f"{' and '.join(slab_options.LABELS)}, RMSE by α₀/α₁, and the width of the lobe of "
+            f"{WIDE[0]:g}/{WIDE[1]:g} at {slab_options.LIGHT}° as in finding 9.",
             _slab_errors(found[slab_options.NAME]),
             "### The convention of the error",
             "All 60 materials. Where slices are reduced anew, models have 5 × 5 sub-cells.",
@@ -85,15 +88,20 @@ def _frosted(rows):
 
 
 def _slab_errors(rows):
-    tables = settings_of(rows)
+    tables = settings_of([row for row in rows if row["quantity"] == "rmse"])
+    widths = settings_of([row for row in rows if row["quantity"] == "width"])
     names = sorted({name for name, _ in next(iter(tables.values()))}, key=lambda n: (parse(n).alpha1, parse(n).alpha0))
+    (wide,) = (name for name in names if (parse(name).alpha0, parse(name).alpha1) == WIDE)
     head = [f"{parse(name).alpha0:g}/{parse(name).alpha1:g}" for name in names]
     lines = []
     for setting, own in tables.items():
         materials = [parse(name) for name, _ in own]
         cells = [number(own[name, slab_options.MODEL]) for name in names]
-        lines.append([setting, *cells, _cell(slabs.claims(own, materials))])
-    return table(["options", *head, "9 (growth)"], lines)
+        width = number(widths[setting][wide, slab_options.MODEL])
+        lines.append([setting, *cells, _cell(slabs.claims(own, materials)), width])
+    truth = number(widths[slab_options.SIMULATION][wide, slab_options.SIMULATION])
+    lines.append(["simulation", *[""] * (len(names) + 1), truth])
+    return table(["options", *head, "9 (growth)", "width"], lines)
 
 
 def _orders(rows):

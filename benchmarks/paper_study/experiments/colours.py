@@ -1,9 +1,12 @@
 """Where the colours at grazing angles come from: orders of the simulation, readings of the models; for finding 11."""
 
+from itertools import product
+
 import numpy as np
 
 import goniosim
 
+from ..errors import label
 from ..slices import ratio, view_directions
 from ..verdicts import Value
 from .scenes import conductor, simulate
@@ -13,10 +16,7 @@ NAME = "colours"
 RAYS, ORDERS, ROUGH, TAU = 4e6, 4, 0.2, 0.2
 INDICES = (1.2, 1.9)
 LIGHT, VIEWER = 75, 75.0
-OPTIONS = {
-    "belcour18_forward": {"fgd": ("exact", "fresnel"), "refraction_scale": ("normal", "paper")},
-    "belcour18_symmetric": {"fgd": ("exact", "fresnel"), "refraction_scale": ("normal", "paper")},
-}
+MODELS, FGD = ("belcour18_forward", "belcour18_symmetric"), ("exact", "fresnel")
 
 
 def run(results):
@@ -32,15 +32,11 @@ def run(results):
             red, green, _ = _sum(part, m, where)
             for quantity, found in (("G/R", ratio(green, red)), ("share of green", ratio(green, all_green))):
                 yield cell(f"η₁ = {eta1}", name.replace("_", " "), "simulation", quantity, found)
-        for model, choices in OPTIONS.items():
-            for fgd in choices["fgd"]:
-                for scale in choices["refraction_scale"]:
-                    options = {"fgd": fgd, "refraction_scale": scale}
-                    material = goniosim.compare(result, [model], {model: options}).materials[0]
-                    (label,) = (variant.label for variant in material.variants)
-                    energy = material.slices[label, "reflection/internal"].energy[m][:, where].sum(axis=1)
-                    written = ", ".join(f"{name}={value}" for name, value in options.items())
-                    yield cell(f"η₁ = {eta1}", written, model, "G/R", Value(float(energy[1] / energy[0])))
+        for model, fgd in product(MODELS, FGD):
+            comparison = goniosim.compare(result, [model], {model: {"fgd": fgd, "refraction_scale": "normal"}})
+            bsdf = comparison.materials[0].bsdf(label(comparison.rows()[0]), "reflection/internal")
+            energy = (bsdf[m] * result.cells.projected_solid_angle[m])[:, where].sum(axis=1)
+            yield cell(f"η₁ = {eta1}", f"fgd={fgd}", model, "G/R", Value(float(energy[1] / energy[0])))
 
 
 def _sum(component, direction, where):

@@ -1,10 +1,10 @@
 """Finding 8: ww09 has a lobe at grazing angles that nothing else has."""
 
+from ..curves import plane_figure
 from ..markdown import number, table
 from ..materials import one
 from ..study import Finding, name_of
 from ..verdicts import CLOSE, Claim, Value, over_twice, within
-from .curves import plane_figure
 from .grazing import LIGHTS, RED, VIEWER, beyond, green_over_red
 
 TITLE = "ww09 has an extra achromatic lobe at grazing angles"

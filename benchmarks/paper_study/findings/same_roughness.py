@@ -24,7 +24,7 @@ def measure(study):
         difference = {name: _largest_difference(study, pair, name) for name in ("elek10", "ww09")}
         answers[label] = YES if difference["elek10"] == 0.0 else NO
         errors = [number(study.errors.rmse(m, "elek10")) for m in pair]
-        rows.append([label, f"{difference['elek10']:.2g}", f"{difference['ww09']:.2g}", *errors])
+        rows.append([label, f"{difference['elek10']:g}", f"{difference['ww09']:.0f}", *errors])
     head = ["metal", "elek10: difference", "ww09: difference", "elek10: RMSE, frosted", "elek10: RMSE, patina"]
     return Finding(
         [Claim("internal paths identical in every cell", answers)],

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..verdicts import Value
 from .curves import curve
+from .verdicts import Value
 
 GREEN = 1
 # Degrees over which a curve is averaged before its peak is looked for.
@@ -13,7 +13,7 @@ DRAWS = 100
 
 
 def width(slices, found, theta_deg, channel=GREEN):
-    """Interquartile range of the energy over sin(theta) cos(phi), the sine of the angle in the plane of incidence.
+    """Interquartile range of the energy over the sine of the angle in the plane of incidence.
 
     Parameters
     ----------
@@ -30,15 +30,16 @@ def width(slices, found, theta_deg, channel=GREEN):
     m = slices.direction(theta_deg)
     valid = slices.result.cells.valid[m]
     x = slices.along_plane(m)[valid]
+    energy, stderr = (part[m, channel][valid] for part in (found.energy, found.stderr))
+    return _with_noise(lambda values: interquartile_range(x, values), energy, stderr)
+
+
+def interquartile_range(x, weights):
+    """Distance between the first and the third quartile of ``x`` with weights, each of shape (n,)."""
     order = np.argsort(x)
-    energy, stderr = (part[m, channel][valid][order] for part in (found.energy, found.stderr))
-
-    def spread(values):
-        share = np.maximum.accumulate(np.cumsum(values))
-        low, high = np.interp([0.25 * share[-1], 0.75 * share[-1]], share, x[order])
-        return high - low
-
-    return _with_noise(spread, energy, stderr)
+    share = np.maximum.accumulate(np.cumsum(weights[order]))
+    low, high = np.interp([0.25 * share[-1], 0.75 * share[-1]], share, x[order])
+    return high - low
 
 
 def peak(slices, found, theta_deg, channel=GREEN):
