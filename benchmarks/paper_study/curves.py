@@ -61,18 +61,19 @@ def plane_figure(slices, theta_deg, channels, models, path):
             seen = value > 0.0
             axes.fill_between(angle, np.maximum(value - error, 1e-300), value + error, where=seen, color="0.8")
             axes.plot(angle, np.where(seen, value, np.nan), "k--", label="simulation")
+            _furnish(axes, title, value)
             axes.axvline(theta_deg, color="0.7", linewidth=0.8, linestyle=":")
-            furnish(axes, title, value)
         panels[0].set_ylabel("BSDF [1/sr]")
         panels[0].legend(frameon=False, fontsize=8)
         figure.suptitle(f"{slices.material.name}, {component}, light at {theta_deg:g}°", fontsize=9)
         figure.savefig(path, dpi=DPI)
 
 
-def furnish(axes, title, value):
-    """Scales and labels of a panel over the signed angle of the viewer."""
+def _furnish(axes, title, value):
+    """Scales and labels of a panel over the signed angle of the viewer; ``value`` is the simulation."""
+    highest = max(float(np.nanmax(line.get_ydata())) for line in axes.lines)
     axes.set_yscale("log")
-    axes.set_ylim(bottom=10.0**-DECADES * max(value.max(initial=0.0), 1e-300))
+    axes.set_ylim(10.0**-DECADES * max(value.max(initial=0.0), 1e-300), 2.0 * max(highest, 1e-300))
     axes.set_xlim(-90.0, 90.0)
     axes.set_xticks(range(-90, 91, 30))
     axes.set_xlabel("angle of the viewer [°]")

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.paper_study import errors, markdown, materials, readme, verdicts
+from benchmarks.paper_study import errors, lobes, markdown, materials, readme, verdicts
+from benchmarks.paper_study.experiments import conventions
 from benchmarks.paper_study.experiments import table as experiments_table
 from benchmarks.paper_study.findings import FINDINGS, rho_and_tau, slabs, smooth_base
 from benchmarks.paper_study.rmse import debiased
@@ -225,3 +226,28 @@ def test_the_document_has_eleven_findings_with_one_verdict_each():
         assert len(re.findall(r"\*\*(?:reproduced|not reproduced|cannot tell)\*\*", section)) == 1
     for picture in re.findall(r"!\[[^]]*\]\(([^)]+)\)", text):
         assert (DOCUMENT.parent / picture).exists()
+
+
+def test_conventions_reduce_the_table_as_they_say():
+    name = "P4-alpha0_0.05-tau_0.2-rho_0.5"
+    by_theta = {"0": 0.3, "75": 0.4, "85": 1.2, "all": 0.75}
+    rows = [
+        row(name, "ww09", value, channel=channel, theta_deg=theta, rmse="1", rmse_eq4="1", rmse_relative="")
+        for theta, value in by_theta.items()
+        for channel in ("R", "G", "mean")
+    ]
+    table = errors.Errors(rows)
+    found = dict(conventions._from_table(table, table.materials[0], "ww09"))
+    assert found[conventions.TABLE] == Value(0.75, 0.001)
+    assert found["without 85°"].value == pytest.approx(np.sqrt((0.3**2 + 0.4**2) / 2))
+    assert found["without 85°"].stderr == pytest.approx(0.5e-3 / 2 / found["without 85°"].value)
+    assert found["without 75° and 85°"].value == pytest.approx(0.3)
+    assert found["mean of the errors of the directions"].value == pytest.approx(1.9 / 3)
+    assert found["root of the mean square of the channels"].value == pytest.approx(0.75)
+    assert "relative to the norm of the simulation" not in found
+
+
+def test_the_interquartile_range_ignores_the_tails():
+    x = np.linspace(-1.0, 1.0, 2001)[::-1]
+    assert lobes.interquartile_range(x, np.ones_like(x)) == pytest.approx(1.0, abs=2e-3)
+    assert lobes.interquartile_range(x, np.abs(x) < 0.1) == pytest.approx(0.1, abs=2e-3)
