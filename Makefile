@@ -47,7 +47,7 @@ WRITTEN := $(PAPER)/.written
 paper-report: $(WRITTEN)
 
 $(COMPARED): $(wildcard $(PAPER)/*.h5) $(MODEL_CODE)
-	$(BIN)/goniosim compare $(PAPER) -o $(PAPER)/comparison
+	$(BIN)/goniosim compare $(PAPER) -o $(PAPER)/comparison > $(PAPER)/ranking.txt
 	touch $@
 
 $(VARIED): $(COMPARED) $(wildcard benchmarks/paper_study/experiments/*.py)
