@@ -27,7 +27,7 @@ def table(header, rows):
     ----------
     header : sequence of str
     rows : sequence of sequences
-        Cells are written with ``str``; a `goniosim` value with `number` first.
+        Cells are written with ``str``.
 
     Returns
     -------

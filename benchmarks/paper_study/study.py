@@ -18,7 +18,7 @@ class Study:
     ----------
     results : Path
         Folder of the 60 results, with ``comparison/`` below it.
-    errors : goniosim table of errors, as `Errors`
+    errors : Errors
     experiments : dict of str to list of dict
         Rows of every experiment by its name, values as text.
     pictures : Path
