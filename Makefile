@@ -5,7 +5,11 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 LINTERS := $(VENV)/.linters
 
-.PHONY: demo install lint test test-all bench clean
+# The study of the paper: rays per incident direction, and the folder of its results.
+RAYS ?= 5e7
+PAPER := out/paper
+
+.PHONY: demo install lint test test-all bench paper paper-report clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -35,6 +39,33 @@ test-all: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py
+
+# Files that are finished with just these rays are left alone; with another RAYS all are simulated anew.
+paper: $(STAMP)
+	$(BIN)/goniosim simulate configs/paper/plastics.yaml --rays $(RAYS) -o $(PAPER)
+	$(BIN)/goniosim simulate configs/paper/metals.yaml --rays $(RAYS) -o $(PAPER)
+	$(BIN)/goniosim simulate configs/paper/slabs.yaml --rays $(RAYS) -o $(PAPER)
+	$(MAKE) paper-report
+
+# What is derived from the results: a make of its own, which sees the files that are there by now.
+MODEL_CODE := $(shell find $(addprefix goniosim/,compare integration models optics scene slices) -name '*.py' 2>/dev/null)
+STUDY_CODE := $(shell find benchmarks/paper_study -name '*.py')
+COMPARED := $(PAPER)/comparison/.done
+VARIED := $(PAPER)/experiments.csv
+WRITTEN := $(PAPER)/.written
+
+paper-report: $(WRITTEN)
+
+$(COMPARED): $(wildcard $(PAPER)/*.h5) $(MODEL_CODE)
+	$(BIN)/goniosim compare $(PAPER) -o $(PAPER)/comparison > $(PAPER)/ranking.txt
+	touch $@
+
+$(VARIED): $(COMPARED) $(wildcard benchmarks/paper_study/experiments/*.py)
+	$(BIN)/python -m benchmarks.paper_study $(PAPER) --experiments
+
+$(WRITTEN): $(VARIED) $(STUDY_CODE)
+	$(BIN)/python -m benchmarks.paper_study $(PAPER)
+	touch $@
 
 clean:
 	rm -rf $(VENV) out build *.egg-info
