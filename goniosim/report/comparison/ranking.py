@@ -15,13 +15,9 @@ def ranking(summaries):
     -------
     str
     """
-    blocks, unmarked = [], True
-    for summary in summaries:
-        lines, all_converged = _material(summary)
-        blocks.append("\n".join(lines))
-        unmarked &= all_converged
-    blocks.append("\n".join(_explanation(unmarked)))
-    return "\n\n".join(blocks)
+    blocks = [_material(summary) for summary in summaries]
+    blocks.append(_explanation([row for summary in summaries for row in summary.overall()]))
+    return "\n\n".join("\n".join(lines) for lines in blocks)
 
 
 def _material(summary):
@@ -44,12 +40,12 @@ def _material(summary):
             header, table = header[:-1], [cells[:-1] for cells in table]
         lines += text.table(header, table)
         first = rows[0]
+        floor = f"noise floor {first['noise_floor']:.2e} sr^-1/2" if first["noise_floor"] > 0.0 else "not hit once"
         lines.append(
-            f"  simulation: noise floor {first['noise_floor']:.2e} sr^-1/2 after "
-            f"{text.count(first['rays'])} rays and {text.duration(first['simulation_seconds'])} per direction"
+            f"  simulation: {floor} after {text.count(first['rays'])} rays and "
+            f"{text.duration(first['simulation_seconds'])} per direction"
         )
-    lines += _not_applicable(summary)
-    return lines, all(row["converged"] for row in rows)
+    return lines + _not_applicable(summary)
 
 
 def _not_applicable(summary):
@@ -83,14 +79,20 @@ def _error(row):
 
 
 def _converged(row):
-    return "yes" if row["converged"] else f"* {row['rmse_converged']:.4g}"
+    if row["converged"]:
+        return "yes"
+    mark = "**" if row["integration"] == "exhausted" else "*"
+    return f"{mark} {row['rmse_converged']:.4g}"
 
 
-def _explanation(all_converged):
+def _explanation(rows):
     lines = [
         "RMSE in sr^-1/2: Eq. 4 of Bati et al. 2019 over all directions, mean over the channels, less the",
-        "noise of the simulation; 'below noise': less than two standard errors, and the limit at 97.7 %.",
+        "noise of the simulation; 'below noise': less than two standard errors, or than what so few hits can hide,",
+        "and the limit at 97.7 %.",
     ]
-    if not all_converged:
+    if not all(row["converged"] for row in rows):
         lines.append("*: the sub-cells are too coarse for this lobe; the converged error stands beside it.")
+    if any(row["integration"] == "exhausted" for row in rows):
+        lines.append("**: this lobe was given up before it was integrated to convergence: trust neither error.")
     return lines
