@@ -59,8 +59,8 @@ def direction_figure(name, component, direction):
     if scale.bands is not None:
         left, top = right + columns * STEP + 0.12, TOP + NAME + DISK + BETWEEN
         axes = panels.place(figure, left, top, BAR, DISK)
-        bar(axes, scale.bands)
-        axes.set_title("1/sr", fontsize=8, pad=4)
+        bar(axes, scale.bands, fontsize=7)
+        axes.set_title("1/sr", fontsize=7, pad=4)
     white = tone.label(float(f"{scale.white:.2g}"))
     views = f"colour by log(1 + √f), white at {white} /sr, and luminance; rings at 30° and 60°{scale.explanation}"
     caption(figure, f"Left: {half_disk.SCALE}.  Right: {views}{labels.explanation([direction])}.")

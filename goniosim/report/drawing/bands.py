@@ -47,11 +47,11 @@ def scale(low, high):
     return ScalarMappable(BoundaryNorm(edges, colours.N), colours)
 
 
-def bar(axes, scale):
+def bar(axes, scale, fontsize=8):
     """Explain the bands in axes of their own, narrow and high."""
     colour_bar = axes.figure.colorbar(scale, cax=axes)
     levels = scale.norm.boundaries[1:-1]
     colour_bar.set_ticks(levels, labels=[tone.label(level) for level in levels])
     colour_bar.minorticks_off()
-    colour_bar.ax.tick_params(length=0, labelsize=8)
+    colour_bar.ax.tick_params(length=0, labelsize=fontsize)
     colour_bar.outline.set_visible(False)
