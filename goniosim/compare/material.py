@@ -78,7 +78,7 @@ class Compared:
         found, limit = (rmse(each, direction, channel) for each in (self.measures, self.converged))
         if not (found.significant or limit.significant):
             return True
-        return abs(found.raw - limit.raw) <= CONVERGED * limit.raw
+        return abs(found.rmse - limit.rmse) <= CONVERGED * limit.rmse
 
     def integrated(self, direction=None):
         """What the converged integration took in a direction, or at most in any of them."""

@@ -85,8 +85,12 @@ def direct_reflection(plan, direction, pool, stop=None):
     )
     if found is None:
         return None
+    energy, error = grid.unfold(found.energy), grid.unfold(found.error)
+    # What no other cell holds may be in one whose lobe is too narrow to be seen.
+    rest = np.maximum(0.0, 1.0 - energy.sum(axis=(1, 2), keepdims=True))
+    error = np.where(np.isfinite(error), error, rest)
     copies = (plan.n_distinct // channels, 1, 1)
-    return np.tile(grid.unfold(found.energy), copies), np.tile(grid.unfold(found.error), copies)
+    return np.tile(energy, copies), np.tile(error, copies)
 
 
 @kernel

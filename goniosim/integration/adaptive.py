@@ -9,15 +9,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .division import MOST_PARTS, divide, whole_cells
+from .division import ALL_TOLD, MOST_PARTS, UNSEEN_PEAK, divide, whole_cells
 from .rule import Rule, evaluate
 
 # Two to four times as fine each: no lobe that the coordinates can tell from a Dirac needs as many.
 MAX_LEVELS = 64
 # Parts of one cell.
 MAX_PARTS = 20_000
-# Cells integrated at a time, so that memory stays bounded on fine slices.
+# Cells integrated at a time, so that memory stays bounded on fine slices; fewer if they are divided into
+# so many parts.
 CHUNK = 1 << 15
+MOST_PENDING = 1 << 18
 _NO_LOBE = np.array([np.inf, np.inf, 1.0, 1.0])
 
 
@@ -30,7 +32,8 @@ class Adaptive:
     energy : ndarray, shape (channels, n)
         Fraction of the incident flux.
     error : ndarray, shape (channels, n)
-        Sum of the differences of successive rules: as a rule far above the true error.
+        Sum of the differences of successive rules: as a rule far above the true error. Infinite where a lobe is
+        too narrow to be seen.
     exhausted : ndarray of bool, shape (n,)
         Cells that were given up at the last level, short of the tolerance.
     """
@@ -70,11 +73,17 @@ def integrate_adaptively(density, grid, pool, numbers, *, relative=0.0, absolute
     rule = Rule(nodes)
     peak = _NO_LOBE if lobe is None else np.array([lobe.u, lobe.psi, lobe.scale_u, lobe.scale_psi])
     chunks = []
-    for start in range(0, len(numbers), CHUNK):
+    start, length = 0, CHUNK
+    while start < len(numbers):
         if stop is not None and stop.is_set():
             return None
-        part = slice(start, start + CHUNK)
-        chunks.append(_integrate(density, grid, pool, numbers[part], relative, absolute[part], peak, rule))
+        part = slice(start, start + length)
+        found = _integrate(density, grid, pool, numbers[part], relative, absolute[part], peak, rule)
+        if found is None:
+            length = max(1, min(length, len(numbers) - start) // 4)
+            continue
+        chunks.append(found)
+        start += length
     if not chunks:
         none = np.zeros((density.channels, 0))
         return Adaptive(none, none.copy(), np.zeros(0, bool))
@@ -82,6 +91,7 @@ def integrate_adaptively(density, grid, pool, numbers, *, relative=0.0, absolute
 
 
 def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
+    """Energy, error and whether it was given up, of some cells; None if they are too many at a time."""
     light = grid.light
     n = len(numbers)
     settled_energy = np.zeros((density.channels, n))
@@ -94,7 +104,7 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
     for level in range(MAX_LEVELS):
         parts = np.empty((MOST_PARTS * len(rectangles), 4))
         parent = np.empty(len(parts), np.int64)
-        premature = np.empty(len(rectangles), bool)
+        premature = np.empty(len(rectangles), np.int8)
         count = divide(grid.code, light, peak, rectangles, bends, square, premature, parts, parent)
         parts, parent = parts[:count], parent[:count]
         values, part_bends = evaluate(density, grid, rule, parts, pool)
@@ -103,16 +113,19 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         estimate = settled_energy + _added(sums, owner, n)
         tolerance = (relative * np.abs(estimate) + absolute)[:, owner]
         close = (difference <= tolerance).all(axis=0)
-        fine = close & ~premature
+        fine = close & (premature == ALL_TOLD)
         spent += np.bincount(owner[parent], minlength=n)
         given_up = ~fine & ((spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1))
         exhausted[owner[given_up]] = True
+        error[:, owner[given_up & (premature == UNSEEN_PEAK)]] = np.inf
         done = fine | given_up
         settled_energy += _added(sums[:, done], owner[done], n)
         error += _added(difference[:, done], owner[done], n)
         if done.all():
             break
         again = ~done[parent]
+        if n > 1 and np.count_nonzero(again) > MOST_PENDING:
+            return None
         rectangles, whole, bends = parts[again], values[:, again], part_bends[:, again]
         # Divided along one side and close: the other side is still to be tried.
         square = close[parent[again]]

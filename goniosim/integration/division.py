@@ -10,6 +10,12 @@ from .rule import D_PSI, D_U, PSI, U
 
 # Parts of one rectangle at most: four, each perhaps cut in two by the horizon.
 MOST_PARTS = 8
+# What the parts of a rectangle cannot tell of its error.
+ALL_TOLD, ONE_SIDE, UNSEEN_PEAK = range(3)
+# How far a lobe reaches, in units of its extent, and the extent in azimuth of one that reaches the pole: there
+# the azimuth does not matter, but a wide lobe of grazing light is a needle at its peak and wide at the pole.
+REACH = 8.0
+AROUND = 0.1
 # How much longer, in units of the lobe, or more bent, one side must be to be divided alone.
 LOPSIDED = 4.0
 # A density that bends more, relative to its mean, is not integrated well, whatever the tolerance.
@@ -94,9 +100,9 @@ def divide(code, light, lobe, rectangles, bends, square, premature, parts, paren
         From `rule.evaluate`.
     square : ndarray of bool, shape (n,)
         Rectangles to be divided along both sides alike, whatever they look like.
-    premature : ndarray of bool, shape (n,), out
-        Whether the parts cannot tell the error of the whole: it holds the peak of the lobe and is too large
-        to show it, or it was divided along one side only. In all other cases the error shows along both.
+    premature : ndarray of int, shape (n,), out
+        What the parts cannot tell of the error of the whole: `UNSEEN_PEAK` if it holds the peak of the lobe and
+        is too large to show it, `ONE_SIDE` if it was divided along one side only; `ALL_TOLD` otherwise.
     parts : ndarray, shape (MOST_PARTS * n, 4), out
     parent : ndarray of int, shape (MOST_PARTS * n,), out
 
@@ -116,7 +122,7 @@ def divide(code, light, lobe, rectangles, bends, square, premature, parts, paren
         n_u = 2
         n_psi = 2
         if _is_near(lobe, u, psi, d_u, d_psi) & (max(long_u, long_psi) > 1.0):
-            premature[k] = True
+            premature[k] = UNSEEN_PEAK
             # Across only, as long as the lobe looks narrower from there.
             n_psi = 1 if long_u > LOPSIDED * long_psi else (4 if long_psi > LOPSIDED * long_u else 2)
             n_u = 1 if n_psi == 4 else (4 if n_psi == 1 else 2)
@@ -125,9 +131,9 @@ def divide(code, light, lobe, rectangles, bends, square, premature, parts, paren
                 n_psi = 1
             elif bends[1, k] > max(BENT, LOPSIDED * bends[0, k]):
                 n_u = 1
-            premature[k] = n_u * n_psi == 2
+            premature[k] = ONE_SIDE if n_u * n_psi == 2 else ALL_TOLD
         else:
-            premature[k] = False
+            premature[k] = ALL_TOLD
         before = count
         for i in range(n_u):
             for j in range(n_psi):
@@ -148,6 +154,7 @@ def divide(code, light, lobe, rectangles, bends, square, premature, parts, paren
 @scalar
 def _is_near(lobe, u, psi, d_u, d_psi):
     """Whether the peak lies in a rectangle, or next to it by less than half its size."""
-    # At the pole of the slice the peak lies at every azimuth.
-    around = (abs(psi + 0.5 * d_psi - lobe[1]) <= d_psi) | (lobe[0] <= d_u)
+    # A lobe that reaches the pole of the slice lies at every azimuth.
+    at_the_pole = (lobe[0] <= REACH * lobe[2]) & (lobe[3] > AROUND)
+    around = (abs(psi + 0.5 * d_psi - lobe[1]) <= d_psi) | at_the_pole
     return (abs(u + 0.5 * d_u - lobe[0]) <= d_u) & around

@@ -9,6 +9,8 @@ import numpy as np
 SHARE = 0.25
 # The azimuth matters everywhere, on the scale of a radian.
 WIDEST = 0.5
+# Slopes up to which widths are proportional to the slope; those of wider lobes are taken from there.
+SMALL = 0.1
 # Spacings of the numbers around a peak below which its lobe cannot be told from a Dirac.
 RESOLVED = 16
 
@@ -49,16 +51,19 @@ def find_lobe(grid, light, alpha):
     -------
     Lobe
     """
+    tilt = min(alpha, SMALL)
     u, psi = grid.module.coordinates(_mirror(light, 0.0, 0.0), grid.light)
-    across = [grid.module.coordinates(_mirror(light, sign * alpha, 0.0), grid.light)[0] for sign in (-1.0, 1.0)]
-    _, around = grid.module.coordinates(_mirror(light, 0.0, alpha), grid.light)
+    # Not tilted so far that the facet turns its back to the light. A tilt towards the light by its own angle
+    # would send it back to where it came from: of both sides, the outer one counts.
+    across = [slope for slope in (-tilt, tilt) if light[2] + slope * light[0] > 0.0]
+    width = max(abs(grid.module.coordinates(_mirror(light, slope, 0.0), grid.light)[0] - u) for slope in across)
+    _, around = grid.module.coordinates(_mirror(light, 0.0, tilt), grid.light)
     turn = abs(math.remainder(around - psi, 2.0 * math.pi))
-    width = min((abs(end - u) for end in across if end != u), default=0.0)
-    return Lobe(u, abs(psi), _scale(width, u), _scale(turn, psi))
+    return Lobe(u, abs(psi), _scale(width, u, alpha / tilt), _scale(turn, psi, alpha / tilt))
 
 
-def _scale(width, at):
-    return min(SHARE * width, WIDEST) if width > RESOLVED * np.spacing(abs(at)) else 0.0
+def _scale(width, at, times):
+    return min(SHARE * times * width, WIDEST) if width > RESOLVED * np.spacing(abs(at)) else 0.0
 
 
 def _mirror(light, slope_x, slope_y):

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 import goniosim
+from goniosim.compare.cells import grid_of
+from goniosim.compare.convergence import converge
 from goniosim.compare.counts import count
 from goniosim.compare.measures import measure, rmse
 from goniosim.compare.rows import material_rows
-from goniosim.integration import adaptive
+from goniosim.integration import Pool, adaptive, integrate_adaptively, integrate_fixed
+from goniosim.models import prepare
 from reference.cell_integrals import integrate_cells
 from reference.closed_forms import fresnel_dielectric, plastic_density, refracted_cosine
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
@@ -96,6 +99,40 @@ def test_a_lobe_is_never_vouched_for_when_it_was_missed(parametrization, theta_d
     assert found.integrated() in ("adaptive", "fixed")
     if found.is_converged():
         assert rmse(found.measures).rmse < 0.02 * norm
+
+
+def test_a_diffuse_lobe_is_integrated_at_every_angle():
+    """Light at 45 degrees once made a lobe of width 1 look like a Dirac, and its integration was given up."""
+    scene = make_scene([dielectric(1.5, 0.2), lambert([0.5, 0.3, 0.2])], [30.0, 45.0])
+    for found in compare(scene, None, rays=1_000).compared:
+        assert found.integrated() in ("fixed", "adaptive") and found.is_converged()
+
+
+def test_noise_does_not_hide_that_sub_cells_are_too_coarse():
+    """The errors with and without convergence share their noise, and differ by more than 2 % however large it is."""
+    scene = make_scene([dielectric(1.5, 0.2), medium(0.2), conductor(1.2, [1.0, 0.01, 0.01], 0.001)], 85.0)
+    result = goniosim.simulate(scene, threads=2, rays=50_000)
+    for component in result.components.values():
+        component.bsdf_stderr *= 30.0
+    (found, *_) = goniosim.compare(result, models=["ww09"]).materials[0].compared
+    assert rmse(found.measures).noise_floor > 0.2 * rmse(found.measures).raw
+    assert not found.is_converged()
+
+
+@pytest.mark.parametrize(("parametrization", "rows", "columns"), [("half", 20, 360), ("classic", 14, 360)])
+def test_an_edge_between_sub_cells_and_the_next_cell_is_seen(parametrization, rows, columns):
+    """Total reflection off a coat of a lower index ends the internal light at 44.4 degrees, within a cell."""
+    scene = make_scene([dielectric(0.7), lambert(0.5)], 40.0, parametrization, rows=rows, columns=columns)
+    material = compare(scene, ["ww09"], rays=1_000)
+    prepared = prepare("ww09", material.scene, 40.0, "reflection/internal")
+    grid = grid_of(material.result, 0)
+    with Pool() as pool:
+        exact = integrate_adaptively(prepared, grid, pool, grid.numbers, absolute=1e-9)
+        coarse, spread = integrate_fixed(prepared, grid, 5, pool)
+        found = converge(prepared, grid, 5, pool, coarse, spread)
+    norm = np.sqrt((exact.energy**2).sum())
+    assert np.abs(coarse - exact.energy).max() > 1e-4 * exact.energy.max()
+    assert np.sqrt(((found.converged - exact.energy) ** 2).sum()) < 2e-3 * norm
 
 
 def test_an_integration_that_was_given_up_is_marked_and_vouches_for_nothing(monkeypatch):

@@ -237,6 +237,37 @@ def test_a_needle_is_found_however_narrow():
     assert total == pytest.approx(g1, abs=2e-3)
 
 
+@pytest.mark.parametrize("theta_deg", [20.0, 45.0, 60.0])
+@pytest.mark.parametrize("parametrization", ["classic", "half"])
+def test_a_lobe_as_wide_as_the_light_is_low_has_an_extent(theta_deg, parametrization):
+    """A facet tilted by theta sends the light back to where it came from, which once made the extent 0."""
+    grid = make_grid(parametrization, 90, 360, theta_deg)
+    lobe = find_lobe(grid, grid.light, math.tan(math.radians(theta_deg)))
+    assert lobe.scale_u > 0.1 and lobe.scale_psi > 0.1
+
+
+@pytest.mark.parametrize("columns", [1, 4])
+@pytest.mark.parametrize("theta_deg", [60.0, 89.9, 89.999])
+@pytest.mark.parametrize("alpha", [0.05, 1e-3, 1e-5])
+def test_a_single_row_holds_as_much_as_many(columns, theta_deg, alpha):
+    """Once a peak counted as that of every azimuth in a row that reached from the pole to it, and was missed."""
+    tolerance = {"relative": 1e-9, "absolute": 1e-13}
+    one, one_error = white_total(theta_deg, alpha, "classic", rows=1, columns=columns, **tolerance)
+    many, many_error = white_total(theta_deg, alpha, "classic", rows=30, columns=60, **tolerance)
+    assert one == pytest.approx(many, abs=one_error + many_error + 1e-12)
+
+
+def test_cells_that_are_divided_too_much_at_a_time_are_taken_by_fewer(monkeypatch, pool):
+    grid = make_grid("classic", 9, 12, 60.0)
+    model = stand_in(_ggx, [0.01], grid)
+    lobe = find_lobe(grid, grid.light, 0.01)
+    whole = integrate_adaptively(model, grid, pool, grid.all_numbers, relative=1e-9, lobe=lobe)
+    monkeypatch.setattr(adaptive, "MOST_PENDING", 5)
+    parts = integrate_adaptively(model, grid, pool, grid.all_numbers, relative=1e-9, lobe=lobe)
+    np.testing.assert_array_equal(parts.energy, whole.energy)
+    np.testing.assert_array_equal(parts.error, whole.error)
+
+
 def test_what_cannot_be_integrated_is_given_up_and_marked(pool):
     grid = make_grid("classic", 9, 12, 30.0)
     model = stand_in(_dust, [], grid)
@@ -256,6 +287,7 @@ def test_a_lobe_that_the_coordinates_cannot_hold_is_marked(pool):
         model, grid, pool, grid.all_numbers, relative=1e-3, lobe=find_lobe(grid, grid.light, alpha)
     )
     assert found.exhausted.any()
+    assert np.isinf(found.error[:, found.exhausted]).all() and np.isfinite(found.error[:, ~found.exhausted]).all()
 
 
 def test_the_same_bits_for_any_number_of_threads_and_chunks(monkeypatch):
