@@ -21,8 +21,9 @@ the first "α₁ = 0.001" of the sentence on Eq. 5 as α₁ = 0.2.
   `paper` for slabs. A first comparison over the 60 materials had shown that finding 5 appears only with the former,
   and the wide lobes of finding 9 with the latter. So finding 5 says which code the authors used, and is no
   independent confirmation.
-* What is measured in the slices for findings 8, 9 (width, peak, the limit of 5°) and 11, after a first look at
-  those of M1, M4, M5 and S1; "beyond 75°" as the meaning of grazing in findings 8 and 11, after 0° and 60° as well.
+* What is measured in the slices for findings 8 (and on which metals), 9 (width, peak, the limit of 5°) and 11, after
+  a first look at those of M1, M4, M5 and S1; "beyond 75°" as the meaning of grazing in findings 8 and 11, after 0°
+  and 60° as well.
 * Finding 5 compares elek10 with each of Belcour's models by itself. A first version asked for both at once on each
   material, and one of six failed.
 * Grey τ and ρ in finding 3, after the declared colours had given mixed answers.

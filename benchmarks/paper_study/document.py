@@ -5,7 +5,7 @@ from goniosim.report import text
 from . import chosen, variations
 from .findings import FINDINGS
 from .markdown import claims_table, failing, table
-from .verdicts import REPRODUCED
+from .verdicts import YES
 
 INTRODUCTION = """\
 # The findings of Bati, Pacanowski and Barla 2019, held against goniosim
@@ -60,7 +60,7 @@ def _facts(errors):
         "theirs": text.count(1.6e8),
         "coarse": len(coarse),
         "rows": len(rows),
-        "exhausted": f" For {exhausted} the integration ended at its last level." if exhausted else "",
+        "exhausted": f" For {exhausted} the integration was given up (`exhausted`)." if exhausted else "",
         "factor": max((max(ratio, 1.0 / ratio) for ratio in ratios if ratio > 0.0), default=1.0),
     }
 
@@ -72,7 +72,7 @@ def _summary(findings):
 
 def _section(number, module, finding):
     parts = [f"## {number}. {module.TITLE}", f"The paper: {module.PAPER}", *finding.body, claims_table(finding.claims)]
-    short = [f"* {claim.text}: {failing(claim)}" for claim in finding.claims if claim.verdict != REPRODUCED]
+    short = [f"* {claim.text}: {failing(claim)}" for claim in finding.claims if claim.count(YES) < len(claim.answers)]
     if short:
         parts.append("\n".join(["Not *yes*:", "", *short]))
     return "\n\n".join([*parts, finding.verdict_line(), *finding.remarks])

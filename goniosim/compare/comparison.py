@@ -114,7 +114,9 @@ def compare(
             result = each if isinstance(each, Result) else open_result(each)
             check_usable(result, allow_partial)
             if any(result.name == other.result.name for other in materials):
-                raise UnusableResultError(f"{result.name}: is the name of two results; rename one of them")
+                raise UnusableResultError(
+                    f"{result.name}: is the name of two results; rename one of them and simulate it anew"
+                )
             materials.append(compare_material(result, request, subcells, pool))
     return Comparison(materials, [row for material in materials for row in material_rows(material)])
 

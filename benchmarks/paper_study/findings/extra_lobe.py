@@ -55,7 +55,8 @@ def measure(study):
             Claim("red in elek10: green under half of red", answers["elek"]),
         ],
         [
-            f"Energy of internal paths that leaves beyond {VIEWER:g}°, red channel, and green over red there.",
+            "M2 and M4, the base of the paper's Figs. 6 and 8, with every coat. Energy of internal paths that leaves "
+            f"beyond {VIEWER:g}°, red channel, and green over red there.",
             table(
                 ["material", "light", "simulation", "ww09", "elek10", "G/R simulation", "G/R ww09", "G/R elek10"], rows
             ),

@@ -67,8 +67,9 @@ _BECAUSE = (
 _REMARK = (
     "With other numbers for A and C (table at the end) the error falls with the mean of τ whenever A and C differ "
     "clearly in it. The convention matters as well: for the luminance, or the root of the mean square of the channels, "
-    "the declared τ gives a larger error with C in all comparisons. Relative to the light that is left, the error of "
-    "elek10 grows with τ, that of ww09 only over a bright base, and both fall with ρ. Inter-reflections, which the "
+    "the declared τ gives a larger error with C in all comparisons. Relative to the light that is left, the error over "
+    "a bright base (ρ = 0.9) grows with τ and levels off, that of ww09 over a dark one falls, and both fall with ρ. "
+    "Inter-reflections, which the "
     "paper holds responsible, work the other way: the models lack the factor 1/1.5² of the solid angle (Section 5.1), "
     "a constant, and inter-reflections brighten the simulation towards them."
 )

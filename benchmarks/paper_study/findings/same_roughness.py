@@ -29,8 +29,9 @@ def measure(study):
     return Finding(
         [Claim("internal paths identical in every cell", answers)],
         [
-            "Largest difference between the integrated slices of the two materials over all cells, channels and "
-            "directions, over the largest value; internal paths, stored with 24 significant bits. ww09 for contrast. "
+            "Largest difference between the integrated energies of the cells of the two materials, over all cells, "
+            "channels and directions, in units of the largest energy of the patina; internal paths, stored with 24 significant "
+            "bits. ww09, whose lobe on the frosted metal is a spike, for contrast. "
             "The errors differ because the simulated materials do.",
             table(head, rows),
         ],

@@ -10,7 +10,10 @@ from . import style
 ASPECT = 1.1 / 2.04
 # Models that go far beyond the reference leave the picture: it is the reference that sets the scale.
 HEADROOM = 1.35
-SCALE = "distance from the centre: luminance by log(1 + √f), labels in 1/sr; dot: light, grey dashes: mirror direction"
+SCALE = (
+    "distance from the centre: luminance by log(1 + √f), labels in 1/sr; dot: light, grey dashes: mirror direction; "
+    "models that agree: the later one thinner, on top"
+)
 
 
 def draw(axes, direction, size=1.0):

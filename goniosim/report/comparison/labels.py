@@ -16,8 +16,10 @@ def short_names(names):
     list of str
         The fewest leading parts, without those that all names share, that keep the names distinct.
     """
+    if len(names) == 1:
+        return list(names)
     parts = [name.split("-") for name in names]
-    shared = set(parts[0]).intersection(*parts[1:]) if len(parts) > 1 else set()
+    shared = set(parts[0]).intersection(*parts[1:])
     rest = [[part for part in name if part not in shared] for name in parts]
     for count in range(1, max(map(len, rest), default=0) + 1):
         short = ["-".join(name[:count]) for name in rest]

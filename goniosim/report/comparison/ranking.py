@@ -16,7 +16,7 @@ def ranking(summaries):
     str
     """
     blocks = [_material(summary) for summary in summaries]
-    blocks.append(_explanation([row for summary in summaries for row in summary.overall()]))
+    blocks.append(_explanation([row for summary in summaries for row in [*summary.overall(), *_totals(summary)]]))
     return "\n\n".join("\n".join(lines) for lines in blocks)
 
 
@@ -33,7 +33,7 @@ def _material(summary):
             "time per\nslice",
             "RMSE of all\nreflection",
         ]
-        total = {summary.label_of(row): row for row in summary.rows if _is_total(row)}
+        total = {summary.label_of(row): row for row in _totals(summary)}
         same = summary.component == "reflection"
         table = [_cells(summary, row, None if same else total.get(summary.label_of(row))) for row in rows]
         if same:
@@ -57,8 +57,13 @@ def _not_applicable(summary):
     return [f"  n/a: {', '.join(names)}: {reason}" for reason, names in models.items()]
 
 
-def _is_total(row):
-    return row["component"] == "reflection" and row["channel"] == "mean" and row["theta_deg"] == "all"
+def _totals(summary):
+    """Rows of all reflection, direct and internal."""
+    return [
+        row
+        for row in summary.rows
+        if (row["component"], row["channel"], row["theta_deg"], row["note"]) == ("reflection", "mean", "all", None)
+    ]
 
 
 def _cells(summary, row, total):
@@ -92,7 +97,9 @@ def _explanation(rows):
         "and the limit at 97.7 %.",
     ]
     if not all(row["converged"] for row in rows):
-        lines.append("*: the sub-cells are too coarse for this lobe; the converged error stands beside it.")
+        lines.append(
+            "*: the sub-cells are too coarse for this lobe; the converged error stands beside it, or in errors.csv."
+        )
     if any(row["integration"] == "exhausted" for row in rows):
         lines.append("**: this lobe was given up before it was integrated to convergence: trust neither error.")
     return lines
