@@ -79,9 +79,9 @@ _REMARK = (
     "The colours stand in the shortest internal paths already; later orders are greener still but carry little (table "
     "at the end). Belcour's models are not blind to them here: with the albedo of the rough interface, the default for "
     "metals, green over red rises two to six times from 0° to 75°, though not half as far as in the simulation. With "
-    "plain Fresnel energies (`fgd=fresnel`) it does not rise, as the paper says. The paper's conjecture that these colours cause the "
-    "rise of the RMSE at η₁ = 1.2 holds: green and blue, next to no error at η₁ = 1.45, have a considerable one at "
-    "1.2, in Eq. 5 and Belcour's models of the size of red's."
+    "plain Fresnel energies (`fgd=fresnel`) it does not rise, as the paper says. The paper's conjecture that these "
+    "colours cause the rise of the RMSE at η₁ = 1.2 holds: green and blue, next to no error at η₁ = 1.45, have a "
+    "considerable one at 1.2, in Eq. 5 and Belcour's models of the size of red's."
 )
 
 

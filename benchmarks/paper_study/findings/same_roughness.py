@@ -30,8 +30,8 @@ def measure(study):
         [Claim("internal paths identical in every cell", answers)],
         [
             "Largest difference between the integrated energies of the cells of the two materials, over all cells, "
-            "channels and directions, in units of the largest energy of the patina; internal paths, stored with 24 significant "
-            "bits. ww09, whose lobe on the frosted metal is a spike, for contrast. "
+            "channels and directions, in units of the largest energy of the patina; internal paths, stored with 24 "
+            "significant bits. ww09, whose lobe on the frosted metal is a spike, for contrast. "
             "The errors differ because the simulated materials do.",
             table(head, rows),
         ],

@@ -50,6 +50,6 @@ _REMARK = (
     "the energy of an interface is plain Fresnel instead of the albedo of the rough interface, elek10 and both of "
     "Belcour's agree to some percent at both α₀: closer than with the albedo that the paper says it used. Without the "
     "two most grazing directions, without the cosine in Eq. 4, with the root of the mean square of the channels, or "
-    "with the weakest and strongest absorption that was tried, α₀ = 0.2 fails. The tables of other readings look at two "
-    "metals, M2 among them, on which it is weakest: there nine in ten of four comparisons are all four."
+    "with the weakest and strongest absorption that was tried, α₀ = 0.2 fails. The tables of other readings look at "
+    "two metals, M2 among them, on which it is weakest: there nine in ten of four comparisons are all four."
 )

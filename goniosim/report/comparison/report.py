@@ -47,7 +47,8 @@ def check_headers(paths, allow_partial):
             raise UnusableResultError(f"{path}: no file can have the name of its material; simulate it under another")
         if name in names:
             raise UnusableResultError(
-                f"{path}: its material has the name {name}, as that of {names[name]}; rename one of them and simulate it anew"
+                f"{path}: its material has the name {name}, as that of {names[name]}; "
+                "rename one of them and simulate it anew"
             )
         names[name] = path
 
