@@ -169,6 +169,6 @@ def result_files(path: StrPath) -> tuple[list[Path], list[Path]]:
     passed_over = [file for file in found if is_models_file(file)]
     files = [file for file in found if file not in passed_over]
     if not files:
-        what = "only files of integrated models" if passed_over else "no result files (*.h5)"
+        what = "files of integrated models and no result files" if passed_over else "no result files (*.h5)"
         raise UnusableResultError(f"{path}: holds {what}; give a folder of results")
     return files, passed_over
