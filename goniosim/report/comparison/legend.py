@@ -4,7 +4,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..drawing import panels
-from ..drawing.legend import LEGEND
+from ..drawing.legend import LEGEND, below_title
 from . import style
 
 # Inches.
@@ -26,20 +26,14 @@ def height_needed(figure_width, count):
 
 def place(figure, handles):
     """Write the legend into the upper left corner, below the title."""
-    width, height = figure.get_size_inches()
-    figure.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(0.2 / width, 1.0 - LEGEND / height),
-        borderpad=0.0,
-        borderaxespad=0.0,
-        ncols=_columns(width),
+    below_title(
+        figure,
+        handles,
+        ncols=_columns(figure.get_figwidth()),
         fontsize=8,
-        frameon=False,
         columnspacing=1.2,
         labelspacing=0.35,
         handlelength=1.8,
-        handletextpad=0.5,
     )
 
 

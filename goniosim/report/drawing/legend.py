@@ -60,6 +60,11 @@ def add(figure, planes, invalid, dirac):
         handles.append(Line2D([], [], label="one exact direction", linestyle="", **ring))
     if invalid:
         handles.append(Patch(facecolor=panels.INVALID_GREY, label="cell cut by the horizon: no value"))
+    below_title(figure, handles, ncols=len(handles), fontsize=8.5, columnspacing=1.3, handlelength=1.5)
+
+
+def below_title(figure, handles, **look):
+    """Write a legend into the upper left corner of a figure, below its title."""
     width, height = figure.get_size_inches()
     figure.legend(
         handles=handles,
@@ -67,10 +72,7 @@ def add(figure, planes, invalid, dirac):
         bbox_to_anchor=(0.2 / width, 1.0 - LEGEND / height),
         borderpad=0.0,
         borderaxespad=0.0,
-        ncols=len(handles),
-        fontsize=8.5,
         frameon=False,
-        columnspacing=1.3,
-        handlelength=1.5,
         handletextpad=0.5,
+        **look,
     )
