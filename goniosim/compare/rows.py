@@ -23,7 +23,7 @@ COLUMNS = {
     "reference_norm": ("sr-0.5", "root of the integral of the squared reference: the scale of rmse_relative"),
     "rmse_finer": ("sr-0.5", "rmse with sub-cells three times as fine along each side"),
     "rmse_converged": ("sr-0.5", "rmse with adaptive integration of the model"),
-    "converged": ("", "0: sub-cells change the RMSE by more than 2 %, or the integration was exhausted; see rmse_converged"),
+    "converged": ("", "0: sub-cells change the RMSE by more than 2 %, see rmse_converged, or integration is exhausted"),
     "integration": ("", "what rmse_converged took: fixed (nothing was suspicious), adaptive, exhausted (given up)"),
     "albedo_reference": ("1", "energy of the reference in the valid cells"),
     "albedo_reference_stderr": ("1", "standard error of albedo_reference; 1.5/rays where no path arrived"),
