@@ -5,9 +5,11 @@ from typing import get_args
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from goniosim.scene.foreign import choice_meant, translate, unknown_key, value_hint
 from goniosim.scene.layers import INTERFACES, Layer, Medium, Part
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.problems import Problem, closest, listed
+from goniosim.scene.quantity import NO_NUMBER
 from goniosim.scene.structure import structure_mistakes
 from goniosim.scene.tree import Node, Path, locate, plain
 
@@ -39,7 +41,8 @@ def check(node: Node) -> tuple[Scene | None, list[Problem]]:
     Scene or None, list of Problem
         None exactly when there are problems.
     """
-    problems = _structure_problems(node)
+    node, problems = translate(node)
+    problems += _structure_problems(node)
     try:
         scene = Scene.model_validate(plain(node))
     except ValidationError as error:
@@ -80,16 +83,11 @@ def _translate(root: Node, detail: ErrorDetails) -> Problem:
     if kind == "union_tag_not_found":
         return node.problem(f"is missing: give one of {listed(CHOICES['type'], 'or')}", got=False, below=("type",))
     if kind == "extra_forbidden":
-        known = _known(location[:-1])
-        return node.problem(
-            f"unknown key; the keys here are {listed(known)}",
-            got=False,
-            suggestion=closest(location[-1], known),
-        )
+        return unknown_key(node, str(location[-1]), _known(location[:-1]))
     if kind == "literal_error":
-        return _wrong_choice(node, CHOICES[str(path[-1])])
+        return _wrong_choice(node, str(path[-1]))
     if kind == "union_tag_invalid":
-        return _wrong_choice(locate(node, ("type",))[0], CHOICES["type"])
+        return _wrong_choice(locate(node, ("type",))[0], "type")
     if kind == "tuple_type":
         return node.problem("must be a list: begin each entry with `- `")
     if kind in ("model_type", "model_attributes_type"):
@@ -101,7 +99,8 @@ def _translate(root: Node, detail: ErrorDetails) -> Problem:
 def _explain(node: Node, path: Path, message: str) -> Problem:
     # Where a mapping belongs, a mistake in it as a whole lies in the entries that the message names.
     whole = path[-1] in MAPPINGS or path[-2:-1] == ("layers",)
-    return node.problem(message, got=not whole)
+    hint, suggestion = value_hint(path[-1], node.value) if message.startswith(NO_NUMBER) else ("", None)
+    return node.problem(message + hint, got=not whole, suggestion=suggestion)
 
 
 def _known(location: Path) -> list[str]:
@@ -115,5 +114,7 @@ def _known(location: Path) -> list[str]:
     return list(MAPPINGS[location[-1]].model_fields)
 
 
-def _wrong_choice(node: Node, choices: tuple[str, ...]) -> Problem:
-    return node.problem(f"must be {listed(choices, 'or')}", suggestion=closest(node.value, choices))
+def _wrong_choice(node: Node, key: str) -> Problem:
+    choices = CHOICES[key]
+    meant = choice_meant(key, node.value) or closest(node.value, choices)
+    return node.problem(f"must be {listed(choices, 'or')}", suggestion=meant)

@@ -1,6 +1,7 @@
 """Numbers a user may write: each quantity is one range and one sentence that explains it."""
 
 import math
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
 CHANNELS = ("R", "G", "B")
 EXACT_INTEGERS = 2**53
+# How the mistake of a value begins that is no number at all; its rule follows.
+NO_NUMBER = "must be a number, and "
 
 Triple = tuple[float, float, float]
 
@@ -94,10 +97,12 @@ class Number(Checked):
 
     def check(self, value: object) -> float:
         """Return the number as int or float, or raise the mistake in it."""
-        if isinstance(value, str) and _looks_numeric(value):
+        if isinstance(value, str) and looks_numeric(value):
             raise mistake("must be a number, and it is text here: write it without quotes")
+        if isinstance(value, str) and (meant := without_commas(value, self.integer)):
+            raise mistake(f"must be a number without a comma: write {meant}")
         if isinstance(value, bool) or not isinstance(value, Real):
-            raise mistake(f"must {self.rule}" if self.integer else f"must be a number, and {self.rule}")
+            raise mistake(f"must {self.rule}" if self.integer else f"{NO_NUMBER}{self.rule}")
         number = int(value) if isinstance(value, Integral) else float(value)
         if isinstance(number, float) and not math.isfinite(number):
             raise mistake(f"must be finite, and {self.rule}")
@@ -142,8 +147,10 @@ class PerChannel(Checked):
         if not isinstance(value, (list, tuple)):
             return self.number.check(value)
         if len(value) != len(CHANNELS):
+            decimals = "; a comma ends a number, so write 0.5 and not 0,5" if len(value) == 2 * len(CHANNELS) else ""
             raise mistake(
-                f"must be one number for all channels or a list of three, for R, G and B: this list has {len(value)}"
+                "must be one number for all channels or a list of three, for R, G and B: "
+                f"this list has {len(value)}{decimals}"
             )
         return check_each(self.number, value)
 
@@ -196,7 +203,25 @@ def rgb(value: float | Triple) -> Triple:
     return value if isinstance(value, tuple) else (value, value, value)
 
 
-def _looks_numeric(text: str) -> bool:
+def without_commas(text: str, whole: bool = False) -> str | None:
+    """The number that was meant by a text with commas in it, or None.
+
+    Parameters
+    ----------
+    text : str
+    whole : bool
+        Of a whole number, commas before three digits each separate thousands; else one marks decimals.
+    """
+    text = text.strip()
+    if whole and re.fullmatch(r"[+-]?\d{1,3}(,\d{3})+", text):
+        return text.replace(",", "")
+    if text.count(",") == 1 and looks_numeric(text.replace(",", ".")):
+        return text.replace(",", ".")
+    return None
+
+
+def looks_numeric(text: str) -> bool:
+    """Whether a text is a number as Python writes it."""
     try:
         float(text)
     except ValueError:

@@ -2,14 +2,14 @@
 
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 from pydantic_core import PydanticCustomError
 
 from goniosim.scene.checking import check
+from goniosim.scene.foreign import unknown_key
 from goniosim.scene.model import FileName, Scene
-from goniosim.scene.problems import Problem, closest, config_error, listed
+from goniosim.scene.problems import Problem, config_error, listed
 from goniosim.scene.template import fill, reference_problems, variables
 from goniosim.scene.tree import Node
 
@@ -87,13 +87,13 @@ def _form_problems(root: Node) -> list[Problem]:
             message = "is out of place beside study: use study.material with cross, or study.materials"
             problems.append(node.problem(message, got=False))
         elif key not in ("study", *SHARED):
-            problems.append(_unknown(node, key, ("study", *SHARED)))
+            problems.append(unknown_key(node, key, ("study", *SHARED), ("scene",)))
     if not isinstance(study.value, dict):
         message = "must be a mapping with name and materials, or with name, cross and material"
         return [*problems, study.problem(message)]
     crossed = "cross" in study.value or "materials" not in study.value
     keys = ("name", "cross", "material") if crossed else ("name", "materials")
-    problems += [_unknown(node, key, keys) for key, node in study.value.items() if key not in keys]
+    problems += [unknown_key(node, key, keys, ("study",)) for key, node in study.value.items() if key not in keys]
     missing = [key for key in keys if key not in study.value]
     message = "is missing: this key is required"
     problems += [study.problem(message, got=False, below=(key,)) for key in missing]
@@ -104,10 +104,6 @@ def _form_problems(root: Node) -> list[Problem]:
     if crossed:
         return problems + _cross_problems(root, study)
     return problems + _list_problems(root, study.value["materials"])
-
-
-def _unknown(node: Node, key: str, known: Sequence[str]) -> Problem:
-    return node.problem(f"unknown key; the keys here are {listed(known)}", False, closest(key, known))
 
 
 def _name_problems(node: Node) -> list[Problem]:

@@ -45,7 +45,12 @@ COAT = "f.yaml:4: material.layers[0].interface"
         ("eta: 1.5,", "eta: 10.1,", f"{COAT}.eta: must {ETA} [got 10.1]"),
         ("eta: 1.5,", "eta: true,", f"{COAT}.eta: must be a number, and {ETA} [got true]"),
         ("eta: 1.5,", "eta: ,", f"{COAT}.eta: must be a number, and {ETA} [got nothing]"),
-        ("eta: 1.5,", "eta: [1, 2, 3],", f"{COAT}.eta: must be a number, and {ETA} [got [1, 2, 3]]"),
+        (
+            "eta: 1.5,",
+            "eta: [1, 2, 3],",
+            f"{COAT}.eta: must be a number, and {ETA}; an index for each channel is not available in a dielectric "
+            "[got [1, 2, 3]]",
+        ),
         ("eta: 1.5,", "eta: {a: 1},", f"{COAT}.eta: must be a number, and {ETA} [got a mapping]"),
         ("eta: 1.5,", "eta: .nan,", f"{COAT}.eta: must be finite, and {ETA} [got nan]"),
         ("eta: 1.5,", "eta: -.inf,", f"{COAT}.eta: must be finite, and {ETA} [got -inf]"),
@@ -160,7 +165,7 @@ COAT = "f.yaml:4: material.layers[0].interface"
             "dielectrc",
             f"{COAT}.type: must be dielectric, conductor or lambert [got 'dielectrc'] (did you mean dielectric?)",
         ),
-        ("dielectric", "glass", f"{COAT}.type: must be dielectric, conductor or lambert [got 'glass']"),
+        ("dielectric", "wood", f"{COAT}.type: must be dielectric, conductor or lambert [got 'wood']"),
         ("dielectric", "[1]", f"{COAT}.type: must be dielectric, conductor or lambert [got [1]]"),
         (
             "classic}",
