@@ -35,15 +35,15 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study
     from goniosim.report.simulation.summary import summary
-    from goniosim.scene import is_study, load_scenes, study_name
+    from goniosim.scene import load_config
 
     from . import jobs
 
     given = {"rays": rays, "seed": seed, "threads": threads}
     options = [f"simulation.{name}={value}" for name, value in given.items() if value is not None]
-    scenes = load_scenes(config, [*overrides, *options])
-    many = is_study(config)
-    planned = jobs.plan(scenes, output, folder=Path(output or study_name(config)) if many else None)
+    described = load_config(config, [*overrides, *options])
+    many = described.study is not None
+    planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
     todo = [job for job in planned if not job.is_finished()] if many else planned
     progress = make_progress(sum(job.rays for job in todo), quiet)
     done = []

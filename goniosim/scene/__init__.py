@@ -1,7 +1,7 @@
 """What the user describes: typed, checked, and read from YAML with the line of every mistake."""
 
 from goniosim.scene.effects import Effect, absent_interfaces, distinct_channels, effects
-from goniosim.scene.load import is_study, load_scene, load_scenes, parse_scene, study_name
+from goniosim.scene.load import Config, load_config, load_scene, load_scenes, parse_scene
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.optical import OpticalStack, optical_stack
 from goniosim.scene.quantity import CHANNELS
@@ -9,6 +9,7 @@ from goniosim.scene.schema import json_schema
 
 __all__ = [
     "CHANNELS",
+    "Config",
     "Effect",
     "Incident",
     "Material",
@@ -19,11 +20,10 @@ __all__ = [
     "absent_interfaces",
     "distinct_channels",
     "effects",
-    "is_study",
     "json_schema",
+    "load_config",
     "load_scene",
     "load_scenes",
     "optical_stack",
     "parse_scene",
-    "study_name",
 ]

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from goniosim.errors import ConfigError
@@ -11,7 +12,7 @@ from goniosim.scene.overrides import override
 from goniosim.scene.problems import config_error
 from goniosim.scene.reading import read_file, read_text
 from goniosim.scene.study import study_scenes
-from goniosim.scene.tree import Node, Origin, from_plain, locate
+from goniosim.scene.tree import Node, Origin, from_plain, locate, plain
 
 
 def load_scene(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Scene:
@@ -20,6 +21,7 @@ def load_scene(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> S
     Parameters
     ----------
     path : str or Path
+        ``-`` is the standard input.
     overrides : iterable of str
         Changes such as ``simulation.rays=1e6``, applied before anything is checked.
 
@@ -35,12 +37,54 @@ def load_scene(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> S
     return _one_scene(override(read_file(path), overrides))
 
 
+@dataclass(frozen=True)
+class Config:
+    """What a scene or study file describes.
+
+    Attributes
+    ----------
+    scenes : list of Scene
+        One for each material, in the order of the study.
+    study : str or None
+        Name of the study, after which the folder of its results is called; None for a single material.
+    """
+
+    scenes: list[Scene]
+    study: str | None
+
+
+def load_config(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Config:
+    """Load a scene file or a study file, reading it once.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``-`` is the standard input.
+    overrides : iterable of str
+        Changes such as ``simulation.rays=1e6``, applied before a study is expanded.
+
+    Returns
+    -------
+    Config
+
+    Raises
+    ------
+    ConfigError
+        With one line for each mistake, ``file:line: field: message``.
+    """
+    root = override(read_file(path), overrides)
+    if "study" not in root.value:
+        return Config([_one_scene(root)], None)
+    return Config(study_scenes(root), plain(locate(root, ("study", "name"))[0]))
+
+
 def load_scenes(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> list[Scene]:
     """Load a scene file or a study file.
 
     Parameters
     ----------
     path : str or Path
+        ``-`` is the standard input.
     overrides : iterable of str
         Changes such as ``simulation.rays=1e6``, applied before a study is expanded.
 
@@ -54,8 +98,7 @@ def load_scenes(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> 
     ConfigError
         With one line for each mistake, ``file:line: field: message``.
     """
-    root = override(read_file(path), overrides)
-    return study_scenes(root) if "study" in root.value else [_one_scene(root)]
+    return load_config(path, overrides).scenes
 
 
 def parse_scene(content: str | dict[str, Any], source: str = "<string>", overrides: Iterable[str] = ()) -> Scene:
@@ -86,46 +129,6 @@ def parse_scene(content: str | dict[str, Any], source: str = "<string>", overrid
     else:
         root = read_text(content, source)
     return _one_scene(override(root, overrides))
-
-
-def is_study(path: str | os.PathLike[str]) -> bool:
-    """Tell whether a file describes a study of several materials.
-
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    bool
-
-    Raises
-    ------
-    ConfigError
-        Unreadable or not YAML.
-    """
-    return "study" in read_file(path).value
-
-
-def study_name(path: str | os.PathLike[str]) -> str | None:
-    """Return the name of a study, after which its folder of results is called.
-
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    str or None
-        None for a file that describes a single material, and for a study whose name is not text.
-
-    Raises
-    ------
-    ConfigError
-        Unreadable or not YAML.
-    """
-    node, rest = locate(read_file(path), ("study", "name"))
-    return node.value if not rest and isinstance(node.value, str) else None
 
 
 def _one_scene(root: Node) -> Scene:

@@ -1,6 +1,7 @@
 """From a YAML file to the raw tree, with the line of every value."""
 
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,10 @@ from goniosim.errors import ConfigError
 from goniosim.scene.problems import Problem, config_error
 from goniosim.scene.tree import MAX_DEPTH, Node, Origin, show_path
 
+STDIN = "<stdin>"
 MAX_BYTES = 16_000_000
 MAX_VALUES = 200_000
+MERGE = "tag:yaml.org,2002:merge"
 SCALARS = {"null", "bool", "int", "float", "str"}
 
 
@@ -24,6 +27,7 @@ def read_file(path: str | os.PathLike[str]) -> Node:
     Parameters
     ----------
     path : str or Path
+        ``-`` is the standard input, which messages call ``<stdin>``.
 
     Returns
     -------
@@ -35,16 +39,8 @@ def read_file(path: str | os.PathLike[str]) -> Node:
     ConfigError
         Unreadable, not UTF-8, not YAML, or not a mapping.
     """
-    source = str(path)
-    try:
-        with Path(path).open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise ConfigError(f"{source}: there is no such file: check the path") from None
-    except IsADirectoryError:
-        raise ConfigError(f"{source}: is a folder: give the scene file in it") from None
-    except OSError as error:
-        raise ConfigError(f"{source}: cannot be read: {error.strerror}") from None
+    source = STDIN if str(path) == "-" else str(path)
+    content = _content(path, source)
     if len(content) > MAX_BYTES:
         raise ConfigError(f"{source}: is larger than 16 MB: this is not a scene file")
     try:
@@ -54,6 +50,22 @@ def read_file(path: str | os.PathLike[str]) -> Node:
         byte = f"0x{content[error.start]:02x}"
         raise ConfigError(f"{source}:{line}: is not UTF-8 text (byte {byte}): save it as UTF-8") from None
     return read_text(text, source)
+
+
+def _content(path: str | os.PathLike[str], source: str) -> bytes:
+    try:
+        if source == STDIN:
+            if sys.stdin is None:
+                raise ConfigError(f"{source}: is closed: give a file")
+            return sys.stdin.buffer.read(MAX_BYTES + 1)
+        with Path(path).open("rb") as stream:
+            return stream.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise ConfigError(f"{source}: there is no such file: check the path") from None
+    except IsADirectoryError:
+        raise ConfigError(f"{source}: is a folder: give the scene file in it") from None
+    except OSError as error:
+        raise ConfigError(f"{source}: cannot be read: {error.strerror}") from None
 
 
 def read_text(text: str, source: str) -> Node:
@@ -152,32 +164,52 @@ class _Reader:
         self._with_lines = with_lines
 
     def node(self, composed: YamlNode, origin: Origin) -> Node:
+        self._count(origin)
+        if isinstance(composed, MappingNode):
+            entries = self._entries(composed, origin).items()
+            return Node(
+                {key: self.node(value, self._below(origin, key, written)) for key, (written, value) in entries}, origin
+            )
+        if isinstance(composed, SequenceNode):
+            return Node([self._item(item, origin, i) for i, item in enumerate(composed.value)], origin)
+        return Node(self._scalar(composed, origin), origin)
+
+    def _count(self, origin: Origin) -> None:
         # An alias repeats its anchor at every use, so the content may be far larger than the file,
         # or endless.
         self.values += 1
         if len(origin.path) > MAX_DEPTH or self.values > MAX_VALUES:
             raise RecursionError
-        if isinstance(composed, MappingNode):
-            return Node(self._mapping(composed, origin), origin)
-        if isinstance(composed, SequenceNode):
-            return Node([self._item(item, origin, i) for i, item in enumerate(composed.value)], origin)
-        return Node(self._scalar(composed, origin), origin)
 
-    def _mapping(self, composed: MappingNode, origin: Origin) -> dict[str, Node]:
-        content: dict[str, Node] = {}
+    def _entries(self, composed: MappingNode, origin: Origin) -> dict[str, tuple[YamlNode, YamlNode]]:
+        """Keys and values of a mapping, those that it takes over by ``<<`` included."""
+        found: dict[str, tuple[YamlNode, YamlNode]] = {}
         for key_node, value_node in composed.value:
             key = key_node.value
+            if key_node.tag == MERGE:
+                continue
             if not isinstance(key, str):
                 self._note(self._below(origin, "?", key_node), "a key must be a single word")
-                continue
-            below = self._below(origin, key, key_node)
-            if key in content:
-                first = content[key].origin.line
-                also = f" (the other is on line {first})" if first else ""
-                self._note(below, f"this key is there twice{also}: remove one")
-                continue
-            content[key] = self.node(value_node, below)
-        return content
+            elif key in found:
+                first = found[key][0].start_mark.line + 1
+                also = f" (the other is on line {first})" if self._with_lines else ""
+                self._note(self._below(origin, key, key_node), f"this key is there twice{also}: remove one")
+            else:
+                found[key] = (key_node, value_node)
+        for key_node, bases in composed.value:
+            if key_node.tag == MERGE:
+                for base in bases.value if isinstance(bases, SequenceNode) else [bases]:
+                    self._count(origin)
+                    self._take_over(base, found, self._below(origin, "<<", key_node))
+        return found
+
+    def _take_over(self, base: YamlNode, found: dict[str, tuple[YamlNode, YamlNode]], origin: Origin) -> None:
+        if not isinstance(base, MappingNode):
+            self._note(origin, "takes over the entries of a mapping, or of a list of them: write <<: *name")
+            return
+        for key, entry in self._entries(base, origin).items():
+            self._count(origin)
+            found.setdefault(key, entry)
 
     def _item(self, composed: YamlNode, origin: Origin, index: int) -> Node:
         return self.node(composed, self._below(origin, index, composed))

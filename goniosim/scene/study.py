@@ -11,9 +11,10 @@ from goniosim.scene.foreign import unknown_key
 from goniosim.scene.model import FileName, Scene
 from goniosim.scene.problems import Problem, config_error, listed
 from goniosim.scene.template import fill, reference_problems, variables
-from goniosim.scene.tree import Node
+from goniosim.scene.tree import Node, size
 
 MAX_MATERIALS = 10_000
+MAX_VALUES = 2_000_000
 SHARED = ("incident", "slice", "simulation")
 
 
@@ -134,6 +135,10 @@ def _cross_problems(root: Node, study: Node) -> list[Problem]:
         return [cross.problem(message, got=False)]
     known = variables({name: axis.value[0] for name, axis in cross.value.items()})
     templates = [study.value["material"], *(root.value[key] for key in SHARED if key in root.value)]
+    # By aliases a small file may hold a large template.
+    if count * sum(map(size, templates)) > MAX_VALUES:
+        message = f"gives {count} materials with more than {MAX_VALUES} values in all: shorten an axis"
+        return [cross.problem(message, got=False)]
     return [problem for node in templates for problem in reference_problems(node, known)]
 
 

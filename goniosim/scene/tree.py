@@ -87,6 +87,14 @@ def plain(node: Node) -> Any:
     return node.value
 
 
+def size(node: Node) -> int:
+    """Number of values in a node, itself included."""
+    if isinstance(node.value, (dict, list)):
+        children = node.value.values() if isinstance(node.value, dict) else node.value
+        return 1 + sum(map(size, children))
+    return 1
+
+
 def from_plain(value: object, origin: Origin) -> Node:
     """Wrap dicts, lists and scalars that come without positions.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from goniosim.scene import is_study, json_schema, load_scene, load_scenes, study_name
+from goniosim.scene import json_schema, load_config, load_scene, load_scenes
 from goniosim.scene.reading import read_file, read_text
 from goniosim.scene.schema import schema_text
 from goniosim.scene.tree import plain
@@ -104,8 +104,8 @@ def test_slabs_are_those_of_the_paper():
 
 
 def test_studies_are_named_after_their_files():
-    names = {path.stem: study_name(path) for path in FILES if is_study(path)}
-    assert names == {"plastics": "plastics", "metals": "metals", "slabs": "slabs"}
+    names = {path.stem: load_config(path).study for path in FILES}
+    assert names == {"quickstart": None, "plastics": "plastics", "metals": "metals", "slabs": "slabs"}
 
 
 def test_quickstart_is_the_metallic_patina():

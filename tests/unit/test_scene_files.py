@@ -3,7 +3,7 @@
 import pytest
 
 from goniosim.errors import ConfigError
-from goniosim.scene import is_study, load_scene, load_scenes, parse_scene, study_name
+from goniosim.scene import load_config, load_scene, load_scenes, parse_scene
 
 SCENE = """\
 material:
@@ -153,8 +153,9 @@ def test_all_wrong_overrides_are_named_in_order_after_the_file():
 
 def test_studies_are_told_from_scenes(tmp_path):
     scene, study = write(tmp_path, SCENE), write(tmp_path, STUDY, "study.yaml")
-    assert (is_study(scene), study_name(scene)) == (False, None)
-    assert (is_study(study), study_name(study)) == (True, "two")
+    assert load_config(scene).study is None
+    assert load_config(study).study == "two"
+    assert load_config(study, ["study.name=three"]).study == "three"
     assert [each.material.name for each in load_scenes(study)] == ["a", "b"]
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from goniosim.scene.foreign import values
 from goniosim.scene.foreign.words import INDICES, PARAMETRIZATIONS, TYPES, Meaning, meaning, normal
-from goniosim.scene.layers import INTERFACES, Layer, Medium
+from goniosim.scene.layers import INTERFACES, Layer, Medium, Part
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.problems import Problem, closest, listed
 from goniosim.scene.quantity import looks_numeric
@@ -18,7 +18,7 @@ _SOUND_INTERFACE = {"type": "dielectric", "eta": 1.5}
 _DIGITS = re.compile(r"\d+(e[+-]?\d+)?", re.IGNORECASE)
 _TYPES = {normal(word): (why, kind) for kind, why, words in TYPES for word in words.split()}
 _PARAMETRIZATIONS = {normal(word): choice for choice, words in PARAMETRIZATIONS.items() for word in words.split()}
-_PARTS = {"material": Material, "incident": Incident, "slice": Slice, "simulation": Simulation}
+_PARTS: dict[str, type[Part]] = {"material": Material, "incident": Incident, "slice": Slice, "simulation": Simulation}
 
 
 def translate(root: Node) -> tuple[Node, list[Problem]]:

@@ -38,9 +38,10 @@ def absorption_times_thickness(_: object, siblings: Siblings) -> object:
     )
     if isinstance(absorption, list):
         absorption, thickness = thickness, absorption
-    if not _is_number(absorption):
+    if not isinstance(absorption, (int, float)) or not _is_number(absorption):
         return None
-    return _each(thickness, lambda x: absorption * x)
+    factor = float(absorption)
+    return _each(thickness, lambda x: factor * x)
 
 
 def as_list(value: object, _: Siblings) -> object:
