@@ -5,6 +5,7 @@ import click
 from .check import check
 from .compare import compare
 from .info import info
+from .init import init
 from .models import models
 from .plot import plot
 from .policy import PolicyGroup, debug_option
@@ -34,5 +35,5 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (simulate, check, info, plot, compare, models, schema):
+for command in (init, simulate, check, info, plot, compare, models, schema):
     main.add_command(command)

@@ -6,9 +6,19 @@ from .policy import debug_option
 
 
 @click.command()
+@click.option("--json", "as_json", is_flag=True, help="Print everything as JSON, for programs.")
 @debug_option
-def models():
-    """List the models: what they apply to, options, nanoseconds per evaluation, citation."""
-    from goniosim.report.models import description
+def models(as_json):
+    """List the published models that can be compared.
 
-    click.echo(description())
+    For each: citation, what it applies to, nanoseconds per evaluation measured here, options with
+    their defaults.
+
+    \b
+    Example: goniosim models --json
+    """  # noqa: D301
+    import json
+
+    from goniosim.report.models import as_data, description
+
+    click.echo(json.dumps(as_data(), indent=1) if as_json else description())

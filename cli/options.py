@@ -3,6 +3,32 @@
 from decimal import Decimal, InvalidOperation
 
 import click
+from click.shell_completion import CompletionItem
+
+
+def refuse_commas(kind, value, param, ctx, whole=False):
+    """Fail with the number that was meant, if a value has commas in it."""
+    if "," in value:
+        from goniosim.scene.quantity import without_commas
+
+        if meant := without_commas(value, whole):
+            kind.fail(f"{value!r} has a comma: write {meant}", param, ctx)
+
+
+class Real(click.ParamType):
+    """A number, with a point before its decimals."""
+
+    name = "number"
+
+    def convert(self, value, param, ctx):
+        """Return the number as a float."""
+        if isinstance(value, float):
+            return value
+        refuse_commas(self, value, param, ctx)
+        try:
+            return float(value)
+        except ValueError:
+            self.fail(f"{value!r} is not a number such as 22.5", param, ctx)
 
 
 class Count(click.ParamType):
@@ -14,6 +40,7 @@ class Count(click.ParamType):
         """Return the number as an int."""
         if isinstance(value, int):
             return value
+        refuse_commas(self, value, param, ctx, whole=True)
         try:
             number = Decimal(value)
         except InvalidOperation:
@@ -22,6 +49,18 @@ class Count(click.ParamType):
             self.fail(f"{value!r} is not a whole number such as 10000000 or 1e7", param, ctx)
         return int(number)
 
+
+class FileName(click.ParamType):
+    """A path, taken as it is: what is wrong with it, the one who opens it says. Shells complete it."""
+
+    name = "path"
+
+    def shell_complete(self, ctx, param, incomplete):
+        """Leave the completion of file names to the shell."""
+        return [CompletionItem(incomplete, type="file")]
+
+
+PATH = FileName()
 
 set_option = click.option(
     "--set",

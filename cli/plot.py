@@ -2,12 +2,13 @@
 
 import click
 
+from .options import PATH, Real
 from .policy import debug_option
 
 
 @click.command()
-@click.argument("file")
-@click.option("-o", "--output", metavar="DIR", default=".", help="Folder for the pictures [default: here].")
+@click.argument("file", type=PATH)
+@click.option("-o", "--output", type=PATH, metavar="DIR", default=".", help="Folder for the pictures [default: here].")
 @click.option(
     "--format",
     "suffix",
@@ -16,7 +17,13 @@ from .policy import debug_option
     show_default=True,
     help="File format.",
 )
-@click.option("--theta", type=float, multiple=True, help="Only this incident direction, in degrees; may be repeated.")
+@click.option(
+    "--theta",
+    type=Real(),
+    multiple=True,
+    metavar="DEG",
+    help="Only this incident direction, in degrees; may be repeated.",
+)
 @click.option(
     "--material", "materials", multiple=True, metavar="NAME", help="Of models.h5: only this material; may be repeated."
 )

@@ -8,6 +8,8 @@ import click
 
 from goniosim.errors import ConfigError, GoniosimError
 
+from .hints import HintingGroup
+
 _DEBUG = "goniosim_cli.debug"
 
 
@@ -27,7 +29,7 @@ debug_option = click.option(
 )
 
 
-class PolicyGroup(click.Group):
+class PolicyGroup(HintingGroup):
     """A group of commands that explains the errors of all of them in the same way."""
 
     def invoke(self, ctx):

@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 
-from ..models import MODELS, describe_options, prepare
+from ..models import COMPONENTS, MODELS, describe_options, prepare
 from ..scene import parse_scene
 
 WIDTH = 100
@@ -45,6 +45,36 @@ def description():
     return "\n\n".join(blocks)
 
 
+def as_data():
+    """Describe all models as plain data that JSON can hold.
+
+    Returns
+    -------
+    list of dict
+        ``name``, ``family``, ``citation``, ``applies_to``, ``components``, ``options`` and
+        ``nanoseconds`` per evaluation here (None if it is not measured).
+    """
+    entries = []
+    for name, model in MODELS.items():
+        _, prepared = _example(name)
+        entries.append(
+            {
+                "name": name,
+                # A family is a folder.
+                "family": model.options.__module__.split(".")[-2:][0],
+                "citation": model.citation,
+                "applies_to": model.applies_to,
+                "components": [component for component in COMPONENTS if _applies(model, component)],
+                "options": [
+                    {"name": each.name, "default": each.default, "values": list(each.values), "meaning": each.meaning}
+                    for each in describe_options(name)
+                ],
+                "nanoseconds": None if prepared is None else round(nanoseconds(prepared), 1),
+            }
+        )
+    return entries
+
+
 def nanoseconds(prepared):
     """Measured time of one evaluation of a model, all channels, on one thread.
 
@@ -74,12 +104,20 @@ def nanoseconds(prepared):
 def _example(name):
     """A material with an absorbing coat to which a model applies: what it is, and the model for light at 45 degrees."""
     for what, base in _BASES.items():
-        layers = [_COAT, _MEDIUM, {"interface": base}]
-        scene = parse_scene({"material": {"name": "example", "layers": layers}, "incident": {"theta_deg": [45]}})
+        scene = _scene(base)
         for component in ("reflection", "transmission"):
             if MODELS[name].supports(scene, component) is None:
                 return what, prepare(name, scene, 45.0, component)
     return None, None
+
+
+def _applies(model, component):
+    return any(model.supports(_scene(base), component) is None for base in _BASES.values())
+
+
+def _scene(base):
+    layers = [_COAT, _MEDIUM, {"interface": base}]
+    return parse_scene({"material": {"name": "example", "layers": layers}, "incident": {"theta_deg": [45]}})
 
 
 def _wrapped(text, indent="  "):

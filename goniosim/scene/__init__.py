@@ -1,6 +1,7 @@
 """What the user describes: typed, checked, and read from YAML with the line of every mistake."""
 
 from goniosim.scene.effects import Effect, absent_interfaces, distinct_channels, effects
+from goniosim.scene.example import example
 from goniosim.scene.load import Config, load_config, load_scene, load_scenes, parse_scene
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.optical import OpticalStack, optical_stack
@@ -20,6 +21,7 @@ __all__ = [
     "absent_interfaces",
     "distinct_channels",
     "effects",
+    "example",
     "json_schema",
     "load_config",
     "load_scene",
