@@ -48,8 +48,8 @@ def goniosim():
     """Call the command in this process: ``goniosim("info", path)`` returns exit code, stdout, stderr."""
     from goniosim_cli.main import main
 
-    def call(*arguments):
-        outcome = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    def call(*arguments, stdin=None):
+        outcome = CliRunner().invoke(main, [str(argument) for argument in arguments], input=stdin)
         return outcome.exit_code, outcome.stdout, outcome.stderr
 
     return call

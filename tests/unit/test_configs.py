@@ -155,7 +155,7 @@ def test_what_a_scene_writes_satisfies_the_schema(path):
         ("quickstart", "[0.05, 0.1, 0.8]", "-1"),
         ("quickstart", "[0.05, 0.1, 0.8]", '"${tau}"'),
         ("quickstart", "- medium: {", "- medium: {tau: 1}\n      interface: {"),
-        ("quickstart", "metallic-patina", ".hidden"),
+        ("quickstart", "name: metallic-patina", "name: .hidden"),
         ("quickstart", "[0, 15", "[0, 0, 15"),
         ("quickstart", "85]", "90]"),
         ("quickstart", "classic", "clasic"),
