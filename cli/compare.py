@@ -5,16 +5,30 @@ from pathlib import Path
 
 import click
 
+from .options import PATH
 from .policy import debug_option
 from .signals import tidied_up
 
 
+def _complete_models(ctx, param, incomplete):
+    from goniosim.models import MODELS
+
+    chosen, comma, word = incomplete.rpartition(",")
+    return [f"{chosen}{comma}{name}" for name in MODELS if name.startswith(word)]
+
+
 @click.command()
-@click.argument("results", metavar="RESULT_OR_FOLDER")
-@click.option("--models", metavar="NAMES", help="Models to compare, with commas between [default: all].")
+@click.argument("results", type=PATH, metavar="RESULT_OR_FOLDER")
+@click.option(
+    "--models",
+    metavar="NAMES",
+    shell_complete=_complete_models,
+    help="Models to compare, with commas between [default: all].",
+)
 @click.option(
     "-o",
     "--output",
+    type=PATH,
     metavar="REPORT",
     help="Folder of the report [default: NAME-comparison, after the input].",
 )
@@ -43,12 +57,16 @@ from .signals import tidied_up
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @debug_option
 def compare(results, models, output, settings, subcells, figures, allow_partial, quiet):
-    """Compare published models with the result file or folder of files RESULT_OR_FOLDER.
+    """Compare published models with simulated slices.
 
-    Each model is integrated over the cells of the result, and its error is given without the noise
-    of the simulation. The report holds tables (errors.csv, errors.json), the integrated slices
-    (models.h5) and figures. `goniosim models` lists the models and their options.
-    """
+    RESULT_OR_FOLDER is a result file, or a folder of them. Each model is integrated over the cells of
+    the result, and its error is given without the noise of the simulation. The report holds tables
+    (errors.csv, errors.json), the integrated slices (models.h5) and figures. `goniosim models` lists the
+    models and their options.
+
+    \b
+    Example: goniosim compare patina.h5 --models ww09,bati19_ww -o report
+    """  # noqa: D301
     from goniosim.compare.comparison import result_files
     from goniosim.compare.variants import check_request
     from goniosim.report.comparison import report as compare_report

@@ -21,7 +21,29 @@ def _show_version(ctx, param, value):
         ctx.exit()
 
 
-@click.group(cls=PolicyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+# As in goniosim/errors.py.
+EPILOG = """\b
+To begin:
+  goniosim init && goniosim simulate quickstart.yaml
+  goniosim plot metallic-patina.h5
+
+\b
+Exit codes:
+  0    success
+  1    a bug in goniosim; --debug shows where
+  2    the command line is wrong
+  3    the scene file or an override is wrong
+  4    the output cannot be written, or would replace something
+  5    the file is not of goniosim
+  6    the file is damaged
+  7    the file is of a newer goniosim
+  8    the result cannot be used for what was asked
+  130  stopped by Ctrl-C; what was gathered is in the output file
+  143  stopped by SIGTERM; what was gathered is in the output file
+"""
+
+
+@click.group(cls=PolicyGroup, epilog=EPILOG, context_settings={"help_option_names": ["-h", "--help"]})
 @click.option(
     "--version",
     is_flag=True,

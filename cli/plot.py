@@ -32,15 +32,19 @@ from .policy import debug_option
 )
 @debug_option
 def plot(file, output, suffix, theta, materials, models):
-    """Draw the slices in the result FILE.
+    """Draw the slices in a result file.
 
-    An overview, and one figure per incident direction: each component is seen from above in colour and
+    Of a result FILE an overview, and one figure per incident direction: each component is seen from above in colour and
     as bands of equal luminance, and along the plane of incidence with its noise.
 
     Of a file of integrated models (models.h5): for each material lobes and views of all models side by
     side, and one figure per direction if there are few materials or one is chosen by --material. With
     --model that model alone, as a result is drawn.
-    """
+
+    \b
+    Examples: goniosim plot patina.h5 -o pictures
+              goniosim plot patina.h5 --theta 60 --format pdf
+    """  # noqa: D301
     from pathlib import Path
 
     from goniosim.store import may_be_models_file

@@ -5,16 +5,17 @@ from pathlib import Path
 
 import click
 
-from .options import Count, set_option
+from .options import PATH, Count, set_option
 from .policy import debug_option
 from .signals import StopSignals
 
 
 @click.command()
-@click.argument("config")
+@click.argument("config", type=PATH)
 @click.option(
     "-o",
     "--output",
+    type=PATH,
     metavar="OUT",
     help="Result file, or the folder of a study's files [default: the name of the material or study].",
 )
@@ -27,11 +28,16 @@ from .signals import StopSignals
 @debug_option
 @click.pass_context
 def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose):
-    """Simulate the scene file CONFIG and write the result.
+    """Simulate a scene or study file and write the result.
 
-    A study writes one file per material into a folder, and leaves alone those that an earlier run has
-    finished. Ctrl-C stops within two seconds and keeps what was gathered, marked as partial.
-    """
+    CONFIG is the file, or - for the standard input. A study writes one file per material into a folder,
+    and leaves alone those that an earlier run has finished. Ctrl-C stops within two seconds and keeps
+    what was gathered, marked as partial.
+
+    \b
+    Examples: goniosim simulate quickstart.yaml
+              goniosim simulate quickstart.yaml --rays 1e7 --set simulation.orders=3
+    """  # noqa: D301
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study
     from goniosim.report.simulation.summary import summary

@@ -1,6 +1,8 @@
 """Help, version and imports: instant, since nothing heavy is loaded."""
 
+import re
 from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -45,12 +47,52 @@ def test_the_public_names_are_there_and_no_others():
 
 
 def test_every_command_is_listed_with_a_whole_sentence(goniosim):
+    from goniosim_cli.main import main
+
     code, out, _ = goniosim("--help")
     assert code == 0
-    for command in ("simulate", "check", "info", "plot", "schema"):
+    for command in main.commands:
         (line,) = [line for line in out.splitlines() if line.strip().startswith(command + " ")]
         assert line.endswith(".")
         assert not line.endswith("...")
+
+
+@pytest.mark.parametrize("command", ["simulate", "info", "init", "plot", "compare", "models", "schema"])
+def test_the_help_of_a_command_has_an_example(goniosim, command):
+    _, out, _ = goniosim(command, "--help")
+    assert re.search(rf"^  Examples?: goniosim {command} ", out, re.MULTILINE)
+
+
+def test_exit_codes_are_the_same_in_help_readme_and_code(goniosim):
+    from goniosim import errors
+
+    _, out, _ = goniosim("--help")
+    shown = set(map(int, re.findall(r"^    (\d+)  +\w", out.partition("Exit codes:")[2], re.MULTILINE)))
+    readme = (Path(errors.__file__).parents[1] / "README.md").read_text(encoding="utf-8").partition("| exit code |")[2]
+    rows = re.findall(r"^\| ([\d, ]+) \|", readme, re.MULTILINE)
+    classes = [each for each in vars(errors).values() if isinstance(each, type) and hasattr(each, "exit_code")]
+    assert {each.exit_code for each in classes} <= shown
+    assert shown == {int(code) for row in rows for code in row.split(",")}
+
+
+@pytest.mark.parametrize(
+    "words, incomplete, found",
+    [
+        ([], "si", ["simulate"]),
+        (["init"], "pl", ["plastic"]),
+        (["simulate"], "qu", ["file"]),
+        (["simulate", "a.yaml", "-o"], "", ["file"]),
+        (["info", "a.h5"], "", ["file"]),
+        (["compare"], "re", ["file"]),
+        (["compare", "a.h5", "--models"], "ww09,belcour18_f", ["ww09,belcour18_forward"]),
+    ],
+)
+def test_shells_complete_commands_files_and_models(words, incomplete, found):
+    from click.shell_completion import BashComplete
+    from goniosim_cli.main import main
+
+    items = BashComplete(main, {}, "goniosim", "_GONIOSIM_COMPLETE").get_completions(words, incomplete)
+    assert [item.value if item.type == "plain" else item.type for item in items] == found
 
 
 def test_python_api_simulates_a_path_or_a_scene(folder):

@@ -262,6 +262,7 @@ def meaning(word: str, places: tuple[str, ...]) -> Meaning | None:
     ----------
     word : str
     places : tuple of str
-        Keys of `KEYS`.
+        Keys of `KEYS`; others hold no foreign words.
     """
-    return next((_MEANINGS[place][normal(word)] for place in places if normal(word) in _MEANINGS[place]), None)
+    found = (_MEANINGS.get(place, {}).get(normal(word)) for place in places)
+    return next(filter(None, found), None)
