@@ -9,7 +9,7 @@ from goniosim.scene.layers import INTERFACES, Layer, Medium, Part
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.problems import Problem, closest, listed
 from goniosim.scene.quantity import looks_numeric
-from goniosim.scene.tree import Node, from_plain, plain
+from goniosim.scene.tree import Node, from_plain, plain, show
 
 # Stand-ins for what cannot be told, so that nothing else is said about it. They never get into a scene.
 _SOUND = {"eta": 1.5, "kappa": 1.0, "alpha": 0.1, "rho": 0.5, "tau": 0.0, "theta_deg": [0.0]}
@@ -199,4 +199,4 @@ def _is_numeric(value: object) -> bool:
 def _shown(value: object) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(map(_shown, value)) + "]"
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+    return f"{value:.12g}" if isinstance(value, float) else show(value)

@@ -40,7 +40,7 @@ def absorption_times_thickness(_: object, siblings: Siblings) -> object:
         absorption, thickness = thickness, absorption
     if not isinstance(absorption, (int, float)) or not _is_number(absorption):
         return None
-    factor = float(absorption)
+    factor = absorption
     return _each(thickness, lambda x: factor * x)
 
 
