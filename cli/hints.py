@@ -34,15 +34,13 @@ OPTIONS = {
     "--subcells": "subsamples supersampling",
     "--json": "asjson machine",
 }
-LACKING = {
-    "gpu": "rays are traced by the processor",
-    "cuda": "rays are traced by the processor",
-    "device": "rays are traced by the processor",
-    "resume": "a study goes on where it stopped: run the same command again",
-    "continue": "a study goes on where it stopped: run the same command again",
-    "phi": "layers look the same from every azimuth, and the light stands at phi = 0",
-    "export": "results are HDF5 files, described in data_schema.md",
-    "convert": "results are HDF5 files, described in data_schema.md",
+# Commands and options for which there is no other word.
+EXPLAINED = {
+    **dict.fromkeys(("gpu", "cuda", "device"), "not available: rays are traced by the processor"),
+    **dict.fromkeys(("resume", "continue"), "a study goes on where it stopped: run the same command again"),
+    **dict.fromkeys(("export", "convert"), "not available: results are HDF5 files, described in data_schema.md"),
+    **dict.fromkeys(("config", "scene", "file", "input", "i"), "name the file behind the command, without an option"),
+    "phi": "not available: layers look the same from every azimuth, and the light stands at phi = 0",
 }
 
 
@@ -81,16 +79,18 @@ class HintingGroup(click.Group):
             return f"did you mean goniosim simulate {word}?"
         if word.lower().endswith((".h5", ".hdf5")):
             return f"did you mean goniosim info {word}?"
-        if lower in LACKING:
-            return f"not available: {LACKING[lower]}"
+        if lower in EXPLAINED:
+            return EXPLAINED[lower]
         known = [name for name in _meant(lower, COMMANDS) if name in (*self.commands, "--help", "--version")]
         known += difflib.get_close_matches(word.lower(), self.commands, n=1)
         return f"did you mean goniosim {known[0]}?" if known else None
 
     def _option_hint(self, error):
         word = _normal(error.option_name)
-        if word in LACKING:
-            return f"not available: {LACKING[word]}"
+        if word in EXPLAINED:
+            return EXPLAINED[word]
+        if error.option_name in _options(self):
+            return f"{error.option_name} stands before the command"
         meant = [*(option for option in OPTIONS if _normal(option) == word), *_meant(word, OPTIONS)]
         here = _options(error.ctx.command)
         for option in (*meant, *difflib.get_close_matches(error.option_name, here, n=1)):

@@ -121,6 +121,23 @@ def problems_of(text, source="f.yaml"):
                 f"f.yaml:10: sampling.samples: {RAYS} (did you mean rays: 100000?)",
             ],
         ),
+        (
+            "interface: {type: conductor, eta: 1.45, kappa: 1.0, alpha: 0.2}",
+            "conductor: {eta: 1.45, kappa: 1.0, alpha: 0.2}",
+            [
+                "f.yaml:6: material.layers[2].conductor: unknown key; write `- interface: {type: ..., ...}`",
+            ],
+        ),
+        (
+            "medium: {tau: 0.5}",
+            "{sigma_a: 0.5, thickness: 1}",
+            [
+                "f.yaml:5: material.layers[1].sigma_a: unknown key; "
+                "absorption belongs to a medium: write `- medium: {tau: ...}`",
+                "f.yaml:5: material.layers[1].thickness: unknown key; "
+                "absorption belongs to a medium: write `- medium: {tau: ...}`",
+            ],
+        ),
         # types
         (
             "type: conductor",

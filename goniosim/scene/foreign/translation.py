@@ -119,8 +119,10 @@ class _Translator:
         layers = replace(layers, value=[self._layer(layer) for layer in layers.value])
         return root.with_child("material", material.with_child("layers", layers))
 
-    def _layer(self, node: Node) -> Node:
-        node = self._keys(node, list(Layer.model_fields), "layer")
+    def _layer(self, written: Node) -> Node:
+        node = self._keys(written, list(Layer.model_fields), "layer")
+        if written.value and node.value == {}:
+            return from_plain({"interface": _SOUND_INTERFACE}, written.origin)
         medium, interface = node.child("medium"), node.child("interface")
         if medium is not None:
             node = node.with_child("medium", self._keys(medium, list(Medium.model_fields), "medium"))
