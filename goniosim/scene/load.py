@@ -21,7 +21,6 @@ def load_scene(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> S
     Parameters
     ----------
     path : str or Path
-        ``-`` is the standard input.
     overrides : iterable of str
         Changes such as ``simulation.rays=1e6``, applied before anything is checked.
 
@@ -37,54 +36,12 @@ def load_scene(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> S
     return _one_scene(override(read_file(path), overrides))
 
 
-@dataclass(frozen=True)
-class Config:
-    """What a scene or study file describes.
-
-    Attributes
-    ----------
-    scenes : list of Scene
-        One for each material, in the order of the study.
-    study : str or None
-        Name of the study, after which the folder of its results is called; None for a single material.
-    """
-
-    scenes: list[Scene]
-    study: str | None
-
-
-def load_config(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Config:
-    """Load a scene file or a study file, reading it once.
-
-    Parameters
-    ----------
-    path : str or Path
-        ``-`` is the standard input.
-    overrides : iterable of str
-        Changes such as ``simulation.rays=1e6``, applied before a study is expanded.
-
-    Returns
-    -------
-    Config
-
-    Raises
-    ------
-    ConfigError
-        With one line for each mistake, ``file:line: field: message``.
-    """
-    root = override(read_file(path), overrides)
-    if "study" not in root.value:
-        return Config([_one_scene(root)], None)
-    return Config(study_scenes(root), plain(locate(root, ("study", "name"))[0]))
-
-
 def load_scenes(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> list[Scene]:
     """Load a scene file or a study file.
 
     Parameters
     ----------
     path : str or Path
-        ``-`` is the standard input.
     overrides : iterable of str
         Changes such as ``simulation.rays=1e6``, applied before a study is expanded.
 
@@ -98,7 +55,8 @@ def load_scenes(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> 
     ConfigError
         With one line for each mistake, ``file:line: field: message``.
     """
-    return load_config(path, overrides).scenes
+    root = override(read_file(path), overrides)
+    return study_scenes(root) if "study" in root.value else [_one_scene(root)]
 
 
 def parse_scene(content: str | dict[str, Any], source: str = "<string>", overrides: Iterable[str] = ()) -> Scene:
@@ -129,6 +87,47 @@ def parse_scene(content: str | dict[str, Any], source: str = "<string>", overrid
     else:
         root = read_text(content, source)
     return _one_scene(override(root, overrides))
+
+
+@dataclass(frozen=True)
+class Config:
+    """What a scene or study file describes.
+
+    Attributes
+    ----------
+    scenes : list of Scene
+        One for each material, in the order of the study.
+    study : str or None
+        Name of the study, after which the folder of its results is called; None for a single material.
+    """
+
+    scenes: list[Scene]
+    study: str | None
+
+
+def load_config(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Config:
+    """Load a scene file or a study file with its name, reading it once.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``-`` is the standard input.
+    overrides : iterable of str
+        Changes such as ``simulation.rays=1e6``, applied before a study is expanded.
+
+    Returns
+    -------
+    Config
+
+    Raises
+    ------
+    ConfigError
+        With one line for each mistake, ``file:line: field: message``.
+    """
+    root = override(read_file(path), overrides)
+    if "study" not in root.value:
+        return Config([_one_scene(root)], None)
+    return Config(study_scenes(root), plain(locate(root, ("study", "name"))[0]))
 
 
 def _one_scene(root: Node) -> Scene:

@@ -88,9 +88,7 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
         _called("interface", "a boundary is called an interface", "boundary coating coat base substrate surface bsdf"),
         _called("medium", "what lies between two interfaces is called a medium", "volume absorber interior filling"),
         _needless(_MEDIUM, "sigma_a sigma_t absorption thickness depth"),
-        _needless(
-            "write `- interface: {type: ..., ...}`", "dielectric conductor lambert metal diffuse glass"
-        ),
+        _needless("write `- interface: {type: ..., ...}`", "dielectric conductor lambert metal diffuse glass"),
     ),
     "type": (_called("type", "what an interface is, its type says", "kind model bsdf material class"),),
     "interface": (
