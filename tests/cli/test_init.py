@@ -16,7 +16,7 @@ from goniosim.scene.reading import read_text
 from goniosim.scene.tree import plain
 
 ROOT = Path(package.__file__).resolve().parent.parent
-SMALL = ("--set", "slice.rows=6", "--set", "slice.columns=12")
+SMALL = ("--set", "slice.rows=6", "--set", "slice.columns=12", "--set", "incident.theta_deg=[30]")
 
 
 def test_every_example_is_listed(goniosim):

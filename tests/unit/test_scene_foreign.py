@@ -1,12 +1,16 @@
 """Scenes in the words of other tools: a hint by meaning for each word, and all that is wrong at once."""
 
+import math
+
 import pytest
 
 from goniosim.errors import ConfigError
 from goniosim.scene import load_scenes, parse_scene
+from goniosim.scene.foreign import translate
 from goniosim.scene.foreign.words import KEYS, TYPES, normal
 from goniosim.scene.layers import INTERFACES, Layer, Medium
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
+from goniosim.scene.tree import Origin, from_plain
 
 PLACES = {
     "scene": Scene,
@@ -366,3 +370,18 @@ def test_the_table_leads_to_keys_that_exist_and_shadows_none():
         if place not in ("interface", "scene"):
             assert not set(words) & set(map(normal, known)), place
     assert {kind for kind, _, _ in TYPES} - {None} == set(INTERFACES)
+
+
+def test_nothing_under_a_foreign_word_trips_it():
+    """A word of every meaning at every place, over whatever YAML or Python may hold."""
+    junk = [None, True, -1, 10**5000, 1e300, math.nan, math.inf, "x", "", "1,5", [], [[1], [2, None]], {}, {"5": None}]
+    noted = 0
+    for word in [meaning.words.split()[0] for meanings in KEYS.values() for meaning in meanings]:
+        for value in junk:
+            part = {word: value, "type": "metal", "thickness": value}
+            layers = [{"interface": part}, {"medium": part}, part]
+            scene = {**part, "material": {**part, "layers": layers}}
+            scene |= dict.fromkeys(("incident", "slice", "simulation"), part)
+            _, problems = translate(from_plain(scene, Origin("f.yaml", 1)))
+            noted += len(list(map(str, problems)))
+    assert noted > 1000

@@ -83,9 +83,8 @@ def test_overrides_reach_what_was_taken_over():
     assert [face.alpha for face in scene.material.interfaces] == [0.2, 0.3, 0.1]
 
 
-@pytest.mark.parametrize("base", ["{x: 1}", "{}"])
-def test_a_bomb_of_merge_keys_is_refused_at_once(base):
-    text = f"a: &a0 {base}\n"
+def test_a_bomb_of_merge_keys_is_refused_at_once():
+    text = "a: &a0 {}\n"
     for level in range(1, 12):
         text += f"b{level}: &a{level} {{<<: [{', '.join([f'*a{level - 1}'] * 10)}]}}\n"
     started = time.perf_counter()
