@@ -97,9 +97,7 @@ def choice_meant(key: str, value: object) -> str | None:
     """The choice that a word of another tool stands for, or None."""
     if key != "parametrization" or not isinstance(value, str):
         return None
-    return next(
-        (choice for choice, words in PARAMETRIZATIONS.items() if normal(value) in map(normal, words.split())), None
-    )
+    return _PARAMETRIZATIONS.get(normal(value))
 
 
 class _Translator:
@@ -151,13 +149,13 @@ class _Translator:
         if not isinstance(node.value, dict):
             return node
         node = self._rejoined(node)
-        siblings = {normal(key): plain(child) for key, child in node.value.items()}
         kept: dict[str, Node] = {}
         for key, child in node.value.items():
             found = None if key in known else meaning(key, places)
             if found is None:
                 kept[key] = child
                 continue
+            siblings = {normal(key): plain(child) for key, child in node.value.items()}
             meant = self._meant(child, found, siblings)
             if found.key is not None and found.key not in (*node.value, *kept):
                 kept[found.key] = meant
