@@ -11,13 +11,15 @@ from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.patheffects import withStroke
 
 from . import tone, view
-from .panels import DIRAC, INK, INVALID_GREY, LIGHT
+from .panels import DIRAC, INK, INVALID_GREY, INVALID_STRIPE, LIGHT, UNSEEN
 
 # Room around a disk in units of its radius; the light arrives from the left.
 MARGIN, ARROW_TAIL = 1.04, 1.3
 # Width over height of a disk with its room.
 ASPECT = (ARROW_TAIL + MARGIN) / (2.0 * MARGIN)
 RINGS_DEG = (30.0, 60.0)
+# Stripes of the hatch of invalid cells across a disk.
+STRIPES = 60
 
 
 class Board:
@@ -61,7 +63,7 @@ class Disk:
     y: float
     radius: float
 
-    def colour(self, slices, numbers, theta_deg, white, spot=None):
+    def colour(self, slices, numbers, theta_deg, white, spot=None, unseen=None):
         """Draw a slice in remapped colours.
 
         Parameters
@@ -76,16 +78,18 @@ class Disk:
             BSDF shown at full brightness, in 1/sr.
         spot : ndarray of 3 floats, optional
             Direction of a Dirac part, to be ringed: its cell may be too small to be seen.
+        unseen : ndarray of bool, shape (R, K), optional
+            Cells that were not hit, from `panels.unseen_cells`.
         """
-        self._show(tone.exposed(view.pixel_values(slices, numbers), white), numbers)
+        self._show(tone.exposed(view.pixel_values(slices, numbers), white), numbers, unseen, UNSEEN[0])
         self._furnish(theta_deg, spot)
 
-    def bands(self, slices, numbers, theta_deg, scale, spot=None):
+    def bands(self, slices, numbers, theta_deg, scale, spot=None, unseen=None):
         """Draw the luminance of a slice in bands of false colours between round values.
 
         Parameters
         ----------
-        slices, numbers, theta_deg, spot
+        slices, numbers, theta_deg, spot, unseen
             As in `colour`.
         scale : matplotlib.cm.ScalarMappable or None
             From `bands.scale`; None draws black.
@@ -95,20 +99,25 @@ class Disk:
         if scale is not None:
             inside_the_last = 0.5 * sum(scale.norm.boundaries[-2:])
             colours = scale.to_rgba(np.minimum(shown, inside_the_last))[..., :3]
-        self._show(colours, numbers)
+        self._show(colours, numbers, unseen, UNSEEN[1])
         self._furnish(theta_deg, spot)
 
     def above(self, words, **look):
         """Write above the disk."""
+        look["parse_math"] = False
         self.axes.text(self.x, self.y - 1.07 * self.radius, words, ha="center", va="bottom", **look)
 
     def below(self, words, **look):
         """Write below the disk."""
         self.axes.text(self.x, self.y + 1.07 * self.radius, words, ha="center", va="top", color="0.3", **look)
 
-    def _show(self, colours, numbers):
+    def _show(self, colours, numbers, unseen, unseen_colour):
         image = np.dstack([colours, numbers != view.OUTSIDE])
+        if unseen is not None:
+            image[(numbers >= 0) & unseen.ravel()[np.maximum(numbers, 0)], :3] = unseen_colour
+        across = np.add(*np.indices(numbers.shape)) * STRIPES // len(numbers)
         image[numbers == view.INVALID, :3] = INVALID_GREY
+        image[(numbers == view.INVALID) & (across % 2 == 1), :3] = INVALID_STRIPE
         r = self.radius
         extent = (self.x - r, self.x + r, self.y + r, self.y - r)
         self.axes.imshow(image, extent=extent, aspect="auto", interpolation="antialiased")
@@ -116,7 +125,7 @@ class Disk:
     def _furnish(self, theta_deg, spot):
         """Rim, rings at 30 and 60 degrees, the light as an arrow outside and a ring where it stands."""
         for ring in RINGS_DEG:
-            self._circle(np.sin(np.radians(ring)), color="white", alpha=0.35, linewidth=0.6)
+            self._circle(np.sin(np.radians(ring)), color="0.6", alpha=0.6, linewidth=0.6)
         self._circle(1.0, color=INK, linewidth=1.2)
         if spot is not None:
             # Turned by half a circle, and downwards is positive.

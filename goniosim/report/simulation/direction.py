@@ -3,7 +3,7 @@
 from matplotlib.figure import Figure
 
 from .. import text
-from ..drawing import bands, inplane, legend, panels, tone, view
+from ..drawing import bands, inplane, legend, letters, panels, tone, view, zoom
 from ..drawing.disks import Board
 
 PIXELS = 600
@@ -11,7 +11,11 @@ PIXELS = 600
 # Inches.
 WIDTH, HEADER, ROW = 12.0, 1.0, 3.1
 TOP_VIEW, BAND_VIEW, BAR, PLANE = 0.1, 2.75, 5.4, 6.75
-DISK_HEIGHT, PLANE_WIDTH = 2.34, 5.05
+DISK_HEIGHT, PLANE_WIDTH, FOOTER = 2.34, 5.05, 0.23
+# Beside a closer look, the plot of all angles is narrower.
+ZOOM_WIDTH, ZOOM_GAP = 1.75, 0.2
+# Channels whose albedos are written out.
+MOST_ALBEDOS = 6
 
 TITLES = {
     "reflection/direct": "Reflection, direct",
@@ -40,48 +44,81 @@ def direction_figure(result, i):
     title = f"{result.name},  light at {text.degrees(theta_deg)}°"
     legend.title(figure, title)
     board = Board(figure)
-    planes = [
-        _row(figure, board, HEADER + ROW * n, result, i, name, numbers) for n, name in enumerate(result.components)
-    ]
-    planes[-1].set_xlabel("view angle in the plane of incidence [deg], light on the left")
+    planes, enlarged = zip(
+        *[_row(figure, board, HEADER + ROW * n, result, i, name, numbers) for n, name in enumerate(result.components)],
+        strict=True,
+    )
+    words = "view angle in the plane of incidence [deg], light on the left"
+    look = {"fontsize": 9, "color": "0.2", "ha": "center"}
+    figure.text((PLANE + 0.5 * PLANE_WIDTH) / WIDTH, FOOTER / figure.get_figheight(), words, **look)
     dirac = any(component.contains_delta for component in result.components.values())
-    legend.add(figure, planes, invalid=bool((numbers == view.INVALID).any()), dirac=dirac)
+    unseen = any(panels.unseen_cells([each], result.cells, i) is not None for each in result.components.values())
+    legend.add(
+        figure,
+        planes,
+        invalid=bool((numbers == view.INVALID).any()),
+        dirac=dirac,
+        unseen=unseen,
+        enlarged=any(enlarged),
+    )
     return figure
 
 
 def _row(figure, board, top, result, i, name, numbers):
     theta_deg = float(result.theta_deg[i])
     component = result.components[name]
-    slices, stderr = component.bsdf[i], component.bsdf_stderr[i]
+    slices = component.bsdf[i]
     height = figure.get_figheight()
     figure.text(0.2 / WIDTH, 1.0 - top / height, TITLES[name], fontsize=10.5, fontweight="bold")
-    right = (PLANE + PLANE_WIDTH) / WIDTH
-    figure.text(right, 1.0 - top / height, _caption(result, i, name), fontsize=9, color="0.3", ha="right")
+    right = PLANE + PLANE_WIDTH
+    words = _caption(result, i, name)
+    room = right - 0.5 - letters.width(TITLES[name], 10.5, bold=True)
+    look = {"fontsize": letters.fitting(words, 9, room), "color": "0.3", "ha": "right", "parse_math": False}
+    figure.text(right / WIDTH, 1.0 - top / height, words, **look)
     top += 0.12
     dirac = panels.dirac_cell(component, i)
     spot = None if dirac is None else view.centre(result.cells, theta_deg, dirac)
     scaling = panels.without_cell(slices, dirac)
+    unseen = panels.unseen_cells([component], result.cells, i)
 
     disk = board.disk(TOP_VIEW, top, DISK_HEIGHT)
     white = tone.white_point(view.pixel_values(scaling, numbers)[numbers >= 0])
-    disk.colour(slices, numbers, theta_deg, white, spot)
+    disk.colour(slices, numbers, theta_deg, white, spot, unseen)
     disk.below(f"colour, full scale {tone.label(float(f'{white:.2g}'))} /sr; rings at 30° and 60°", fontsize=8.5)
 
     disk = board.disk(BAND_VIEW, top, DISK_HEIGHT)
     lit = bands.extent(slices, numbers)
     scale = bands.scale(*lit) if lit else None
-    disk.bands(slices, numbers, theta_deg, scale, spot)
+    disk.bands(slices, numbers, theta_deg, scale, spot, unseen)
     disk.below("luminance [1/sr]", fontsize=8.5)
     if scale is not None:
         bands.bar(panels.place(figure, BAR, top + 0.12, 0.14, DISK_HEIGHT - 0.24), scale)
 
-    plane = panels.place(figure, PLANE, top + 0.05, PLANE_WIDTH, DISK_HEIGHT - 0.05)
-    angle, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, slices, stderr)
-    panels.curves(plane, result.channels, angle, f, sigma, sampled=component.hits is not None)
-    _, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, stderr)
-    panels.plane_axes(plane, theta_deg, inplane.highest(f, sigma, panels.BAND_SIGMAS))
+    return _curves(figure, top + 0.05, result, i, component, scaling)
+
+
+def _curves(figure, top, result, i, component, scaling):
+    """The plane of incidence, and beside it a closer look at a narrow lobe."""
+    theta_deg, height = float(result.theta_deg[i]), DISK_HEIGHT - 0.05
+    curve = inplane.plane_of_incidence(result.cells, i, theta_deg, component.bsdf[i], component.bsdf_stderr[i])
+    clear = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, component.bsdf_stderr[i])
+    highest = inplane.highest(*clear[1:], panels.BAND_SIGMAS)
+    shown = zoom.of_channels(*clear)
+    width = PLANE_WIDTH - (ZOOM_WIDTH + ZOOM_GAP if shown else 0.0)
+    plane = panels.place(figure, PLANE, top, width, height)
+    sampled = component.hits is not None
+    panels.curves(plane, result.channels, *curve, sampled=sampled)
+    panels.plane_axes(plane, theta_deg, highest)
+    panels.note_coinciding(plane, result.channels, *curve, highest or 1.0)
     plane.set_ylabel("BSDF [1/sr], by log(1 + √f)")
-    return plane
+    if shown:
+        zoom.mark(plane, shown)
+        near = panels.place(figure, PLANE + width + ZOOM_GAP, top, ZOOM_WIDTH, height)
+        panels.curves(near, result.channels, *curve, sampled=sampled)
+        near.set_ylim(plane.get_ylim())
+        near.set_yticks(plane.get_yticks(), [])
+        zoom.furnish(near, shown, theta_deg)
+    return plane, shown is not None
 
 
 def _caption(result, i, name):
@@ -89,7 +126,10 @@ def _caption(result, i, name):
     component = result.components[name]
     value = component.energy.sum(axis=(2, 3))
     groups = text.channel_groups(result.channels, [value[i : i + 1]])
-    parts = ["albedo  " + "  ".join(f"{label} {value[i, c]:.3g}" for label, c in groups)]
+    if len(groups) > MOST_ALBEDOS:
+        parts = [f"albedo {value[i].min():.3g} to {value[i].max():.3g} in {len(result.channels)} channels"]
+    else:
+        parts = ["albedo  " + "  ".join(f"{label} {value[i, c]:.3g}" for label, c in groups)]
     energy = component.energy[i].sum()
     if component.hits is not None and energy > 0.0:
         noise = 100.0 * component.stderr[i].sum() / energy
