@@ -69,7 +69,7 @@ def measure(study):
         ],
         remarks=[
             _REMARK,
-            "RMSE of patinas (α₀ = α₁ = 0.2, grey τ) by channel; green and blue are equal:",
+            "RMSE [sr^-1/2] of patinas (α₀ = α₁ = 0.2, grey τ) by channel; green and blue are equal:",
             _rise(study),
         ],
     )

@@ -12,7 +12,7 @@ from .labels import short_names
 
 # Inches. Right of the plot stand the names of the models, each led to its mark.
 LEFT, PLOT, HEIGHT, FOOTER = 0.85, 6.4, 5.0, 0.55
-LEAD, NAME_LINE, NAME_SIZE, WIDEST_NAME = 0.45, 0.17, 8.0, 3.6
+LEAD, NAME_LINE, NAME_SIZE, WIDEST_NAME = 0.45, 0.19, 8.0, 3.6
 # Lines of so many materials have their names.
 FEW, MATERIAL_SIZE, WIDEST_MATERIAL = 12, 6.5, 1.6
 SIMULATION = {"color": "0.5", "linewidth": 0.9, "marker": ".", "markersize": 3.5}
@@ -131,8 +131,9 @@ def _names(axes, marks, height):
             },
             zorder=1,
         )
-        size = letters.fitting(variant.label, NAME_SIZE, WIDEST_NAME)
-        axes.text(x, y / height, variant.label, fontsize=size, va="center", transform=axes.transAxes, parse_math=False)
+        words, size = letters.snug(variant.label, NAME_SIZE, WIDEST_NAME)
+        look = {"fontsize": size, "va": "center", "linespacing": 1.0, "parse_math": False}
+        axes.text(x, y / height, words, transform=axes.transAxes, **look)
 
 
 def _spaced(wanted, least, height):

@@ -81,7 +81,8 @@ def _width(group):
 
 def _height(line):
     longest = max(letters.width(name, NAME_SIZE) for _, materials in line for name in _names(materials))
-    return PANEL_TOP + PANEL_TITLE + PANEL_HEIGHT + NAMES + SLANT * longest
+    lines = max(name.count("\n") + 1 for _, materials in line for name in _names(materials))
+    return PANEL_TOP + PANEL_TITLE + PANEL_HEIGHT + NAMES + SLANT * longest + 0.5 * NAME_LINE * lines
 
 
 def _by_alpha(summaries, category):

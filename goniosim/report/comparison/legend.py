@@ -78,5 +78,7 @@ def place_list(figure, left, top, width, entries, twins):
             label += f", {NOISE}"
             axes.fill_between([0.0, SAMPLE], line - 0.3, line + 0.3, color=style.BAND, linewidth=0.0)
         axes.plot([0.0, 0.5 * SAMPLE, SAMPLE], [line] * 3, markevery=[1], **look)
-        axes.text(SAMPLE + 0.12, line, label, fontsize=letters.fitting(label, SIZE, room), **LIST_TEXT)
+        label, size = letters.snug(label, SIZE, room)
+        look = {"va": "center", "linespacing": 1.0} if "\n" in label else {}
+        axes.text(SAMPLE + 0.12, line, label, fontsize=size, **LIST_TEXT | look)
         axes.text(width, line, entry.error, ha="right", fontsize=SIZE, color="0.3", **LIST_TEXT)

@@ -6,7 +6,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 from ..drawing import tone
 
 # Up to so many decades, 2 and 5 have labels as well; from so many on, the marks between decades go.
-FEW, MANY = 2.0, 7.0
+FEW, MANY = 2.5, 7.0
 
 
 def logarithmic(axes, which, low, high):

@@ -8,24 +8,23 @@ from matplotlib.patches import Patch
 from . import letters, panels
 
 # Inches.
-TITLE, LEGEND, EDGE, LINE = 0.36, 0.5, 0.2, 0.19
+TITLE, LEGEND, EDGE = 0.36, 0.5, 0.2
 CAPTION, CAPTION_EDGE, CAPTION_LINE = 0.1, 0.15, 0.155
-# Points. A title that would have to be smaller than this on one line has two.
-LARGEST, SMALLEST, TWO_LINES = 14.0, 9.0, 10.5
+# A title of two lines begins higher and ends lower.
+TWO_LINES = 0.07
+# Points.
+LARGEST = 14.0
 SIZE, CAPTION_SIZE = 8.5, 8.5
 # Of a legend, in units of its letters.
-HANDLE, PAD, SPACING, LABELS = 1.8, 0.5, 1.3, 0.35
+HANDLE, PAD, SPACING, LABELS, LINE = 1.8, 0.5, 1.3, 0.35, 1.45
 
 
 def title(figure, words):
     """Write the title into the upper left corner, as large as there is room for, in two lines if need be."""
     width, height = figure.get_size_inches()
     room = width - 2.0 * EDGE
-    size, baseline = letters.fitting(words, LARGEST, room, bold=True), TITLE
-    if size < SMALLEST:
-        halves = letters.broken(words, TWO_LINES, room, bold=True)
-        words = halves if halves.count("\n") == 1 else _halved(words)
-        size, baseline = letters.fitting(words, TWO_LINES, room, bold=True), TITLE + 0.06
+    words, size = letters.snug(words, LARGEST, room, bold=True)
+    baseline = TITLE + (TWO_LINES if "\n" in words else 0.0)
     figure.text(
         EDGE / width,
         1.0 - baseline / height,
@@ -165,8 +164,8 @@ def layout(labels, size, room, rows=None):
 
 def height(labels, size, room):
     """Height in inches of a legend, see `layout`."""
-    columns, _ = layout(labels, size, room)
-    return LINE * -(-len(labels) // columns)
+    columns, size = layout(labels, size, room)
+    return LINE * size / letters.POINTS * -(-len(labels) // columns)
 
 
 def below_title(figure, handles, rows=None, size=SIZE):
@@ -199,12 +198,3 @@ def _width(labels, size, columns):
     split = np.array_split(np.array(labels, dtype=object), columns)
     words = sum(max(letters.width(label, size) for label in column) for column in split)
     return words + size * (columns * (HANDLE + PAD) + (columns - 1) * SPACING) / letters.POINTS
-
-
-def _halved(words):
-    """Two lines of about the same length, broken at a space or else anywhere."""
-    middle = len(words) // 2
-    spaces = [place for place, letter in enumerate(words) if letter == " "]
-    place = min(spaces, key=lambda each: abs(each - middle), default=middle)
-    place = place if abs(place - middle) < 0.2 * len(words) else middle
-    return words[:place].rstrip() + "\n" + words[place:].lstrip()

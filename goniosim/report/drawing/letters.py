@@ -8,14 +8,18 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
 POINTS = 72.0
+# Letters are set on whole pixels, which makes small ones a little wider than they are drawn.
+PIXELS = 1.05
+# Letters that would have to shrink to less than this share of their size go on two lines.
+SMALLER = 0.75
 
 
 @lru_cache(maxsize=4096)
 def width(words, size, bold=False):
-    """Width in inches of the widest line of some words at a size in points."""
+    """Width in inches of the widest line of some words at a size in points, at most."""
     font = FontProperties(size=size, weight="bold" if bold else "normal")
     lines = words.split("\n")
-    return max(text_to_path.get_text_width_height_descent(line, font, False)[0] for line in lines) / POINTS
+    return PIXELS * max(text_to_path.get_text_width_height_descent(line, font, False)[0] for line in lines) / POINTS
 
 
 def fitting(words, size, room, bold=False):
@@ -49,6 +53,33 @@ def broken(words, size, room, bold=False):
             lines.append("")
         lines[-1] += part
     return "\n".join(line.rstrip() for line in lines)
+
+
+def snug(words, size, room, bold=False):
+    """Make words fit on one line, or, where their letters became much smaller, on two.
+
+    Parameters
+    ----------
+    words : str
+    size : float
+        In points, at most.
+    room : float
+        Width in inches.
+    bold : bool
+
+    Returns
+    -------
+    words : str
+        Perhaps with a line break.
+    size : float
+    """
+    alone = fitting(words, size, room, bold)
+    if alone >= SMALLER * size:
+        return words, alone
+    size *= SMALLER
+    while (lines := broken(words, size, room, bold)).count("\n") > 1:
+        size *= 0.95
+    return lines, fitting(lines, size, room, bold)
 
 
 def _cut(piece, size, room, bold):

@@ -54,13 +54,17 @@ def curves(axes, channels, angle, f, sigma, sampled):
     sampled : bool
         Whether nothing seen leaves a gap; an integrated component is really zero there.
     """
-    for order, (name, c) in enumerate(text.channel_groups(channels, [f, sigma])):
+    groups = text.channel_groups(channels, [f, sigma])
+    # The bands of many channels would hide each other.
+    alpha = min(0.25, 0.75 / len(groups))
+    single = all(len(channel) == 1 for channel in channels)
+    for order, (name, c) in enumerate(groups):
         colour, dash = channel_look(name, c, len(channels))
         low, high = (tone.remap(f[:, c] + sign * BAND_SIGMAS * sigma[:, c]) for sign in (-1.0, 1.0))
         seen = (f[:, c] > 0.0) | (not sampled)
-        axes.fill_between(angle, low, high, where=seen, color=colour, alpha=0.25, linewidth=0.0)
+        axes.fill_between(angle, low, high, where=seen, color=colour, alpha=alpha, linewidth=0.0)
         line = np.where(seen, tone.remap(f[:, c]), np.nan)
-        label = " = ".join(name) if name in CHANNEL_LOOKS else name
+        label = " = ".join(name if single else name.split("+"))
         # Later lines are thinner, so that those that nearly agree are all seen.
         width = max(1.7 - 0.15 * order, 0.9)
         axes.plot(angle, line, color=colour, linewidth=width, linestyle=dash, label=label)
