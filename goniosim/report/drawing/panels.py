@@ -165,14 +165,19 @@ def coinciding(curves, tolerance):
 
 
 def _apart(one, other):
-    """Greatest distance of two curves; infinite where only one has a gap."""
-    if not len(one[0]) or not len(other[0]):
+    """Greatest distance of two curves where there are both; infinite where only one has a gap."""
+    if not np.array_equal(*(np.isnan(height).any() for _, height in (one, other))):
         return np.inf
-    there = np.interp(other[0], *one) - other[1], np.interp(one[0], *other) - one[1]
-    gaps = np.isnan(one[1]), np.isnan(other[1])
-    if gaps[0].any() or gaps[1].any():
-        return np.inf if not np.array_equal(*gaps) else float(np.nanmax(np.abs(one[1] - other[1]), initial=0.0))
-    return float(max(np.abs(difference).max() for difference in there))
+    if np.isnan(one[1]).any():
+        same = np.array_equal(np.isnan(one[1]), np.isnan(other[1])) and np.array_equal(one[0], other[0])
+        return float(np.nanmax(np.abs(one[1] - other[1]), initial=0.0)) if same else np.inf
+    distances = [
+        np.abs(np.interp(places, *between, left=np.nan, right=np.nan) - heights)
+        for between, (places, heights) in ((one, other), (other, one))
+        if len(between[0])
+    ]
+    distances = np.concatenate([*distances, np.empty(0)])
+    return float(np.nanmax(distances)) if np.isfinite(distances).any() else np.inf
 
 
 def note_coinciding(axes, channels, angle, f, sigma, top):

@@ -32,7 +32,9 @@ def window(angle, f, sigma, tolerance=0.25):
     if len(f) < 5 or not f.max() > 0.0:
         return None
     peak = int(np.argmax(f))
-    if sigma[peak] > tolerance * f[peak] or f[peak] < OUTSTANDING * np.median(f):
+    # Patches may crowd round the peak: the rest is what most angles show.
+    rest = np.median(np.interp(np.arange(-89.0, 90.0), angle, f))
+    if sigma[peak] > tolerance * f[peak] or f[peak] < OUTSTANDING * rest:
         return None
     half = 0.5 * f[peak]
     left, right = _crossing(angle, f, peak, half, -1), _crossing(angle, f, peak, half, 1)
