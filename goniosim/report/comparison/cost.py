@@ -103,10 +103,10 @@ def _simulations(axes, lines):
             words = letters.broken(names[name], MATERIAL_SIZE, WIDEST_MATERIAL)
             room = PLOT * (high - np.log(found[-1, 0])) / (high - low) - 0.1
             fits = letters.width(words, MATERIAL_SIZE) <= room
-            place = {"ha": "left", "va": "center"} if fits else {"ha": "right", "va": "bottom"}
+            place = {"ha": "left", "va": "center"} if fits else {"ha": "right", "va": "top"}
             look = {"fontsize": MATERIAL_SIZE, "color": "0.3", "parse_math": False, "path_effects": [HALO]} | place
             axes.annotate(
-                words, found[-1], (5 if fits else 0, 0 if fits else 4), textcoords="offset points", zorder=2.5, **look
+                words, found[-1], (5, 0) if fits else (-4, -4), textcoords="offset points", zorder=2.5, **look
             )
 
 

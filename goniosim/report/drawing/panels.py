@@ -180,33 +180,23 @@ def _apart(one, other):
     return float(np.nanmax(distances)) if np.isfinite(distances).any() else np.inf
 
 
-def note_coinciding(axes, channels, angle, f, sigma, top):
-    """Say in a corner of the axes of `curves` which channels cannot be told apart."""
+def note_coinciding(axes, channels, angle, f, sigma, top, size=8.0):
+    """Say in a corner of the axes of `curves` which channels cannot be told apart: ``G ≈ B``."""
     groups = text.channel_groups(channels, [f, sigma])
     if len(groups) > MOST_NAMED:
         return
     # Half a line's width, of the height of the axes in points.
     points = axes.get_position().height * axes.figure.get_figheight() * letters.POINTS
-    curves_ = [(angle, tone.remap(f[:, c])) for _, c in groups]
-    twins = coinciding(curves_, 0.8 / points * tone.remap(top))
+    lines = [(angle, tone.remap(f[:, c])) for _, c in groups]
     same = {}
-    for (name, _), earlier in zip(groups, twins, strict=True):
+    for (name, _), earlier in zip(groups, coinciding(lines, 0.8 / points * tone.remap(top)), strict=True):
         if earlier:
             first = groups[min(earlier)][0]
             same.setdefault(first, [first]).append(name)
-    if same:
-        words = "one curve: " + ", ".join(" ≈ ".join(names) for names in same.values())
-        axes.text(
-            0.015,
-            0.97,
-            words,
-            transform=axes.transAxes,
-            va="top",
-            fontsize=8,
-            color="0.3",
-            parse_math=False,
-            path_effects=[withStroke(linewidth=2.5, foreground="white")],
-        )
+    words = ", ".join(" ≈ ".join(names) for names in same.values())
+    halo = [withStroke(linewidth=2.5, foreground="white")]
+    look = {"fontsize": size, "color": "0.3", "parse_math": False, "path_effects": halo}
+    axes.text(0.015, 0.97, words, transform=axes.transAxes, va="top", **look)
 
 
 def channel_look(name, c, count):

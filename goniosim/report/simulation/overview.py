@@ -85,8 +85,10 @@ def _column(disk, plane, result, total, i, numbers, unseen):
     disk.colour(slices, numbers, theta_deg, white, spot, unseen)
     angle, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, slices, stderr)
     panels.curves(plane, result.channels, angle, f, sigma, sampled=unseen is not None)
-    _, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, stderr)
-    panels.plane_axes(plane, theta_deg, inplane.highest(f, sigma, panels.BAND_SIGMAS), spacing=0.15)
+    _, *clear = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, stderr)
+    highest = inplane.highest(*clear, panels.BAND_SIGMAS)
+    panels.plane_axes(plane, theta_deg, highest, spacing=0.15)
+    panels.note_coinciding(plane, result.channels, angle, f, sigma, highest or 1.0, size=7.0)
 
 
 def _on(result, side):
