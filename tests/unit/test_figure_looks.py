@@ -15,6 +15,7 @@ from goniosim.report.comparison.cost import cost_figure
 from goniosim.report.comparison.errors import SIGMAS, errors_figure
 from goniosim.report.comparison.ranking import ranking
 from goniosim.report.drawing import bands, disks, panels, tone, view, zoom
+from goniosim.report.simulation.direction import direction_figure
 from synthetic import make_result, make_summary
 
 
@@ -170,3 +171,23 @@ def test_the_cost_figure_names_every_model_material_and_axis():
 def test_errors_have_their_unit_in_the_ranking():
     header = ranking([make_summary()]).splitlines()
     assert any(line.split().count("[sr^-1/2]") >= 2 for line in header[:4])
+
+
+def test_the_figure_of_a_direction_looks_closer_at_a_narrow_lobe():
+    """A lobe in four cells: another panel beside the plane, another picture between the disks."""
+    result = make_result(theta_deg=(30.0,), channels=("R", "G", "B"), rows=90, columns=36, rays=10**7)
+    component = result.components["reflection/internal"]
+    result.components = {"reflection/internal": component}
+    figure = direction_figure(result, 0)
+    assert len([axes for axes in figure.axes if axes.lines]) == 2 and len(figure.axes[0].images) == 2
+    component.bsdf[0, :, 29:31, 17:19] = 1e3
+    component.bsdf_stderr[0, :, 29:31, 17:19] = 1.0
+    figure = direction_figure(result, 0)
+    board, near = figure.axes[0], figure.axes[-1]
+    assert len(board.images) == 3
+    low, high = near.get_xlim()
+    assert low < 29.0 and high > 31.0 and high - low < 20.0
+    assert "enlarged beside it" in [text.get_text() for text in figure.legends[0].get_texts()]
+    # The bands reach the peak.
+    values = np.asarray(board.images[2].get_array())
+    np.testing.assert_allclose(values[60, 60, :3], colormaps["viridis"](1.0)[:3])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, FancyArrowPatch
+from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
 from matplotlib.patheffects import withStroke
 
 from . import tone, view
@@ -53,6 +53,27 @@ class Board:
         radius = 0.5 * height / MARGIN
         return Disk(self._axes, left + ARROW_TAIL * radius, top + 0.5 * height, radius)
 
+    def closer(self, middle, top, size, slices, numbers, scale, unseen, words):
+        """Draw a lobe enlarged, in bands of luminance.
+
+        Parameters
+        ----------
+        middle, top, size : float
+            Of the square, in inches.
+        slices, scale, unseen
+            As in `Disk.bands`.
+        numbers : ndarray of int64, shape (pixels, pixels)
+            From `view.magnified`.
+        words : str
+            To stand below.
+        """
+        image = _image(_band_colours(slices, numbers, scale), numbers, unseen, UNSEEN[1])
+        extent = (middle - 0.5 * size, middle + 0.5 * size, top + size, top)
+        self._axes.imshow(image, extent=extent, aspect="auto", interpolation="antialiased")
+        frame = Rectangle((extent[0], top), size, size, fill=False, color=INK, linewidth=0.8)
+        self._axes.add_artist(frame)
+        self._axes.text(middle, top + size + 0.02, words, ha="center", va="top", color="0.3", fontsize=7)
+
 
 @dataclass(frozen=True)
 class Disk:
@@ -94,12 +115,7 @@ class Disk:
         scale : matplotlib.cm.ScalarMappable or None
             From `bands.scale`; None draws black.
         """
-        shown = tone.luminance(view.pixel_values(slices, numbers))
-        colours = np.zeros((*shown.shape, 3))
-        if scale is not None:
-            inside_the_last = 0.5 * sum(scale.norm.boundaries[-2:])
-            colours = scale.to_rgba(np.minimum(shown, inside_the_last))[..., :3]
-        self._show(colours, numbers, unseen, UNSEEN[1])
+        self._show(_band_colours(slices, numbers, scale), numbers, unseen, UNSEEN[1])
         self._furnish(theta_deg, spot)
 
     def above(self, words, **look):
@@ -112,12 +128,7 @@ class Disk:
         self.axes.text(self.x, self.y + 1.07 * self.radius, words, ha="center", va="top", color="0.3", **look)
 
     def _show(self, colours, numbers, unseen, unseen_colour):
-        image = np.dstack([colours, numbers != view.OUTSIDE])
-        if unseen is not None:
-            image[(numbers >= 0) & unseen.ravel()[np.maximum(numbers, 0)], :3] = unseen_colour
-        across = np.add(*np.indices(numbers.shape)) * STRIPES // len(numbers)
-        image[numbers == view.INVALID, :3] = INVALID_GREY
-        image[(numbers == view.INVALID) & (across % 2 == 1), :3] = INVALID_STRIPE
+        image = _image(colours, numbers, unseen, unseen_colour)
         r = self.radius
         extent = (self.x - r, self.x + r, self.y + r, self.y - r)
         self.axes.imshow(image, extent=extent, aspect="auto", interpolation="antialiased")
@@ -152,3 +163,22 @@ class Disk:
     def _ring(self, x, y, **look):
         place = [self.x + x * self.radius], [self.y + y * self.radius]
         self.axes.plot(*place, "o", markerfacecolor="none", **look)
+
+
+def _image(colours, numbers, unseen, unseen_colour):
+    """Colours and opacity of all pixels: what was not hit, and what has no value, in colours of their own."""
+    image = np.dstack([colours, numbers != view.OUTSIDE])
+    if unseen is not None:
+        image[(numbers >= 0) & unseen.ravel()[np.maximum(numbers, 0)], :3] = unseen_colour
+    across = np.add(*np.indices(numbers.shape)) * STRIPES // len(numbers)
+    image[numbers == view.INVALID, :3] = INVALID_GREY
+    image[(numbers == view.INVALID) & (across % 2 == 1), :3] = INVALID_STRIPE
+    return image
+
+
+def _band_colours(slices, numbers, scale):
+    shown = tone.luminance(view.pixel_values(slices, numbers))
+    if scale is None:
+        return np.zeros((*shown.shape, 3))
+    inside_the_last = 0.5 * sum(scale.norm.boundaries[-2:])
+    return scale.to_rgba(np.minimum(shown, inside_the_last))[..., :3]

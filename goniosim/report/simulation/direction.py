@@ -1,5 +1,6 @@
 """The figure of one incident direction: a row of three panels for each component."""
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from .. import text
@@ -14,6 +15,8 @@ TOP_VIEW, BAND_VIEW, BAR, PLANE = 0.1, 2.75, 5.4, 6.75
 DISK_HEIGHT, PLANE_WIDTH, FOOTER = 2.34, 5.05, 0.23
 # Beside a closer look, the plot of all angles is narrower.
 ZOOM_WIDTH, ZOOM_GAP = 1.75, 0.2
+# Between the disks, in the corner that they leave: its middle, its size.
+CLOSER, CLOSER_SIZE, CLOSER_PIXELS = 2.9, 0.56, 120
 # Channels whose albedos are written out.
 MOST_ALBEDOS = 6
 
@@ -86,39 +89,61 @@ def _row(figure, board, top, result, i, name, numbers):
     disk.colour(slices, numbers, theta_deg, white, spot, unseen)
     disk.below(f"colour, full scale {tone.label(float(f'{white:.2g}'))} /sr; rings at 30° and 60°", fontsize=8.5)
 
+    curve, clear = (
+        inplane.plane_of_incidence(result.cells, i, theta_deg, f, component.bsdf_stderr[i]) for f in (slices, scaling)
+    )
+    shown = zoom.of_channels(*clear)
+    near = None if shown is None else _magnified(result.cells, i, theta_deg, shown)
+
     disk = board.disk(BAND_VIEW, top, DISK_HEIGHT)
-    lit = bands.extent(slices, numbers)
-    scale = bands.scale(*lit) if lit else None
+    scale = _scale(slices, scaling, numbers, near)
     disk.bands(slices, numbers, theta_deg, scale, spot, unseen)
     disk.below("luminance [1/sr]", fontsize=8.5)
     if scale is not None:
         bands.bar(panels.place(figure, BAR, top + 0.12, 0.14, DISK_HEIGHT - 0.24), scale)
 
-    return _curves(figure, top + 0.05, result, i, component, scaling)
-
-
-def _curves(figure, top, result, i, component, scaling):
-    """The plane of incidence, and beside it a closer look at a narrow lobe."""
-    theta_deg, height = float(result.theta_deg[i]), DISK_HEIGHT - 0.05
-    curve = inplane.plane_of_incidence(result.cells, i, theta_deg, component.bsdf[i], component.bsdf_stderr[i])
-    clear = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, component.bsdf_stderr[i])
+    if near is not None:
+        words = f"± {_reach(shown):.2g}°"
+        board.closer(CLOSER, top + 0.05, CLOSER_SIZE, slices, near, scale, unseen, words)
     highest = inplane.highest(*clear[1:], panels.BAND_SIGMAS)
-    shown = zoom.of_channels(*clear)
+    plane = _curves(figure, top + 0.05, result.channels, theta_deg, component.hits is not None, curve, highest, shown)
+    return plane, shown is not None
+
+
+def _reach(shown):
+    return 0.5 * (shown[1] - shown[0])
+
+
+def _magnified(cells, i, theta_deg, shown):
+    return view.magnified(cells, i, theta_deg, 0.5 * sum(shown), _reach(shown), CLOSER_PIXELS)
+
+
+def _scale(slices, scaling, numbers, near):
+    """Bands for the whole slice; with a closer look they reach up to its peak, of which the disk has few pixels."""
+    lit = bands.extent(slices, numbers)
+    if lit is None:
+        return None
+    peak = 0.0 if near is None else np.quantile(tone.luminance(view.pixel_values(scaling, near)), 0.98)
+    return bands.scale(lit[0], max(lit[1], float(peak)))
+
+
+def _curves(figure, top, channels, theta_deg, sampled, curve, highest, shown):
+    """The plane of incidence, and beside it a closer look at a narrow lobe."""
+    height = DISK_HEIGHT - 0.05
     width = PLANE_WIDTH - (ZOOM_WIDTH + ZOOM_GAP if shown else 0.0)
     plane = panels.place(figure, PLANE, top, width, height)
-    sampled = component.hits is not None
-    panels.curves(plane, result.channels, *curve, sampled=sampled)
+    panels.curves(plane, channels, *curve, sampled=sampled)
     panels.plane_axes(plane, theta_deg, highest)
-    panels.note_coinciding(plane, result.channels, *curve, highest or 1.0)
+    panels.note_coinciding(plane, channels, *curve, highest or 1.0)
     plane.set_ylabel("BSDF [1/sr], by log(1 + √f)")
     if shown:
         zoom.mark(plane, shown)
         near = panels.place(figure, PLANE + width + ZOOM_GAP, top, ZOOM_WIDTH, height)
-        panels.curves(near, result.channels, *curve, sampled=sampled)
+        panels.curves(near, channels, *curve, sampled=sampled)
         near.set_ylim(plane.get_ylim())
         near.set_yticks(plane.get_yticks(), [])
         zoom.furnish(near, shown, theta_deg)
-    return plane, shown is not None
+    return plane
 
 
 def _caption(result, i, name):
