@@ -98,7 +98,7 @@ def _simulations(axes, lines):
     low, high = np.log(axes.get_xlim())
     names = dict(zip(lines, short_names(list(lines)), strict=True)) if lines else {}
     for name, found in lines.items():
-        axes.plot(*found.T, zorder=2, **SIMULATION)
+        axes.plot(*found.T, zorder=2, alpha=1.0 if len(lines) <= FEW else 0.4, **SIMULATION)
         if len(lines) <= FEW:
             words = letters.broken(names[name], MATERIAL_SIZE, WIDEST_MATERIAL)
             room = PLOT * (high - np.log(found[-1, 0])) / (high - low) - 0.1
