@@ -136,7 +136,7 @@ def lines(entries):
     """
     widths = np.linspace(THICKEST, THINNEST, len(entries))
     return [
-        SIMULATION if entry.model is None else of(entry).mark(3.8) | of(entry).line(width)
+        SIMULATION if entry.model is None else of(entry).mark(4.6) | of(entry).line(width)
         for entry, width in zip(entries, widths, strict=True)
     ]
 
