@@ -191,3 +191,18 @@ def test_the_figure_of_a_direction_looks_closer_at_a_narrow_lobe():
     # The bands reach the peak.
     values = np.asarray(board.images[2].get_array())
     np.testing.assert_allclose(values[60, 60, :3], colormaps["viridis"](1.0)[:3])
+
+
+def test_one_exact_direction_is_not_enlarged_but_its_point_is_seen():
+    """The cell of a Dirac part among cells that nothing hit: a line between two gaps shows nothing."""
+    result = make_result(theta_deg=(30.0,), channels=("R", "G", "B"), rows=90, columns=36)
+    component = result.components["transmission"]
+    result.components = {"transmission": component}
+    for array in (component.hits, component.energy, component.bsdf, component.bsdf_stderr):
+        array[:] = 0
+    component.hits[0, 30, 18], component.energy[0, :, 30, 18], component.bsdf[0, :, 30, 18] = 100, 0.1, 1e3
+    figure = direction_figure(result, 0)
+    (plane,) = [axes for axes in figure.axes if axes.lines and axes.axison]
+    points = [line.get_xdata() for line in plane.lines if line.get_marker() == "."]
+    assert [len(each) for each in points] == [1] and points[0][0] == pytest.approx(30.5, abs=1.0)
+    assert panels.isolated(np.array([1.0, np.nan, 2.0, np.nan, 3.0, 4.0])).tolist() == [0, 2]

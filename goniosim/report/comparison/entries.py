@@ -192,11 +192,11 @@ def _entry(cells, number, theta_deg, component, label, model, options, slices, *
     dirac = next((panels.dirac_cell(part, number) for part in parts if part.contains_delta), None)
     curve = partial(inplane.plane_of_incidence, cells, number, theta_deg)
     angle, f, sigma = curve(_luminance(bsdf), _luminance(stderr))
-    scaling = f, sigma
-    if dirac is not None:
-        _, *scaling = curve(_luminance(panels.without_cell(bsdf, dirac)), _luminance(stderr))
-    highest = inplane.highest(*scaling, panels.BAND_SIGMAS) or 1.0
-    narrow = zoom.of_channels(angle, *scaling)
+    clear = panels.without_cell(bsdf, dirac)
+    scaling = curve(_luminance(clear), _luminance(stderr))
+    highest = inplane.highest(*scaling[1:], panels.BAND_SIGMAS) or 1.0
+    # What leaves in one exact direction and nothing else has no shape to be seen.
+    narrow = None if dirac is not None and clear is bsdf else zoom.of_channels(*scaling)
     unseen = panels.unseen_cells(parts, cells, number)
     f, sigma = f[:, 0], sigma[:, 0]
     if unseen is not None:

@@ -57,6 +57,9 @@ def _polar(axes, entry, **look):
     tilt, r = np.radians(entry.angle), tone.remap(entry.f)
     (line,) = axes.plot(r * np.sin(tilt), r * np.cos(tilt), **look)
     line.set_clip_path(axes.patch)
+    alone = panels.isolated(r)
+    (r, tilt), look = (r[alone], tilt[alone]), {"color": look["color"], "zorder": look["zorder"]}
+    axes.plot(r * np.sin(tilt), r * np.cos(tilt), linestyle="", marker=".", markersize=5.0, **look)
 
 
 def _scale(axes, radius, theta_deg, size):

@@ -68,6 +68,14 @@ def curves(axes, channels, angle, f, sigma, sampled):
         # Later lines are thinner, so that those that nearly agree are all seen.
         width = max(1.7 - 0.15 * order, 0.9)
         axes.plot(angle, line, color=colour, linewidth=width, linestyle=dash, label=label)
+        alone = isolated(line)
+        axes.plot(angle[alone], line[alone], color=colour, linestyle="", marker=".", markersize=4.0)
+
+
+def isolated(line):
+    """Numbers of the points of a line between two gaps (NaN): a line does not show them."""
+    gap = np.isnan(np.concatenate([[np.nan], line, [np.nan]]))
+    return np.flatnonzero(~gap[1:-1] & gap[:-2] & gap[2:])
 
 
 def plane_axes(axes, theta_deg, highest, spacing=0.09):

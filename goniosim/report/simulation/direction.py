@@ -92,7 +92,8 @@ def _row(figure, board, top, result, i, name, numbers):
     curve, clear = (
         inplane.plane_of_incidence(result.cells, i, theta_deg, f, component.bsdf_stderr[i]) for f in (slices, scaling)
     )
-    shown = zoom.of_channels(*clear)
+    # What leaves in one exact direction and nothing else has a ring, and no shape to be seen.
+    shown = None if dirac is not None and scaling is slices else zoom.of_channels(*clear)
     near = None if shown is None else _magnified(result.cells, i, theta_deg, shown)
 
     disk = board.disk(BAND_VIEW, top, DISK_HEIGHT)
