@@ -81,6 +81,28 @@ def make_result(
     )
 
 
+def make_summary(name="M1-a", alpha0=0.2, category="metals"):
+    """Make up the errors of three models: the first are far below the noise and significant, the last is not."""
+    # Only here: the slow reference tracer and others do without the models.
+    from goniosim.compare.rows import COLUMNS
+    from goniosim.compare.summary import Summary
+    from goniosim.compare.variants import Variant
+
+    variants = [Variant("ww09"), Variant("belcour18_forward", (("jacobian", "snell"),)), Variant("elek10")]
+    rows = []
+    for number, variant in enumerate(variants):
+        row = dict.fromkeys(COLUMNS) | {"model": variant.model, "options": variant.options_text, "material": name}
+        row |= {"component": "reflection/internal", "channel": "mean", "theta_deg": "all", "rays": 1e6}
+        error = 0.001 * (number + 1)
+        row |= {"rmse": error, "rmse_stderr": 0.0003, "rmse_upper": 2 * error, "below_noise": int(number == 2)}
+        row |= {"rmse_converged": error * (1 + number), "converged": int(number != 1), "noise_floor": 0.02}
+        row |= {"rmse_relative": 10 * error, "reference_norm": 0.1, "model_seconds": 0.01, "integration": "adaptive"}
+        row |= {"albedo_error": 0.1, "albedo_reference_stderr": 0.01, "simulation_seconds": 1.0}
+        rows.append(row)
+    times = np.array([0.01, 0.02]), np.array([0.04, 0.02])
+    return Summary(name, category, alpha0, 0.2, "reflection/internal", variants, rows, *times, {})
+
+
 def _cells(parametrization, directions, rows, columns):
     edges = np.linspace(0, np.pi / 2, rows + 1)
     shape = (directions, rows, columns)

@@ -9,6 +9,8 @@ from goniosim.report.drawing.inplane import plane_of_incidence
 
 WIDTH, HEIGHT = 7.0, 3.4
 DECADES = 3.0
+# Marks along a curve: so far apart, as a share of the panel.
+APART = 0.2
 
 
 def curve(slices, found, theta_deg):
@@ -55,9 +57,10 @@ def _draw(slices, theta_deg, channels, models):
     figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
     panels = figure.subplots(1, len(channels), squeeze=False)[0]
     for axes, (title, channel) in zip(panels, channels.items(), strict=True):
-        for model in models:
+        for number, model in enumerate(models):
             angle, f, _ = curve(slices, slices.model(model, component), theta_deg)
-            axes.plot(angle, f[:, channel], color=style.COLOURS[model], label=model)
+            look = style.look(model).mark(3.5) | style.look(model).line(1.5)
+            axes.plot(angle, f[:, channel], label=model, markevery=(APART * number / len(models), APART), **look)
         angle, f, sigma = curve(slices, slices.reference(component), theta_deg)
         value, error = f[:, channel], 2.0 * sigma[:, channel]
         seen = value > 0.0

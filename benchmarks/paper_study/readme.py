@@ -60,7 +60,7 @@ def medians(study):
             found = [study.errors.rmse(m, model).value for m in group if model in study.errors.models(m)]
             cells.append(f"{np.median(found):.2g}" if found else "")
         rows.append([name, *cells])
-    return table(["median RMSE", *MODELS], rows)
+    return table(["median RMSE [sr^-1/2]", *MODELS], rows)
 
 
 def verdicts(findings):

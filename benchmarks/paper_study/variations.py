@@ -39,11 +39,11 @@ def text(study):
             "### Metals: other readings of the models",
             f"{' and '.join(metal_options.LABELS)}. Each row gives the options to all models that have them.",
             _fare(found[metal_options.NAME], METALS, base=next(iter(metal_options.SETTINGS))),
-            "M2 is the metal on which finding 5 is weakest. Its RMSE with a smooth base, of the models that have the "
-            "option:",
+            "M2 is the metal on which finding 5 is weakest. Its RMSE [sr^-1/2] with a smooth base, of the models that "
+            "have the option:",
             _frosted(found[metal_options.NAME]),
             "### Slabs: other readings of Belcour's model",
-            f"{' and '.join(slab_options.LABELS)}, RMSE by α₀/α₁, and the width of the lobe of "
+            f"{' and '.join(slab_options.LABELS)}, RMSE [sr^-1/2] by α₀/α₁, and the width of the lobe of "
             f"{WIDE[0]:g}/{WIDE[1]:g} at {slab_options.LIGHT}° as in finding 9.",
             _slab_errors(found[slab_options.NAME]),
             "### The convention of the error",

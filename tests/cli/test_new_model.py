@@ -98,6 +98,6 @@ def test_new_models_do_not_look_alike(registered):
     from goniosim.report.comparison import style
 
     variants = [Variant(name) for name in MODELS]
-    assert len({style.colour(variant) for variant in variants}) == len(variants)
-    assert len({style.marker(variant) for variant in variants}) == len(variants)
+    assert len({style.of(variant).colour for variant in variants}) == len(variants)
+    assert len({style.of(variant).marker for variant in variants}) == len(variants)
     assert style.spread_out(reversed(variants)) == variants

@@ -110,3 +110,17 @@ def test_noise_does_not_decide_the_scale():
     sigma = np.array([[0.1], [45.0]])
     assert inplane.highest(f, sigma, 2.0) == pytest.approx(1.2)
     assert inplane.highest(f, np.full_like(f, 60.0), 2.0) == pytest.approx(50.0)
+
+
+@pytest.mark.parametrize("parametrization", ["classic", "half"])
+def test_a_closer_look_is_centred_on_its_direction(parametrization):
+    cells = make_result(parametrization=parametrization, theta_deg=(60.0,), rows=90, columns=360).cells
+    cells.valid[:] = True
+    numbers = view.magnified(cells, 0, 60.0, 62.3, 5.0, 101)
+    for place, angle in ((50, 62.3), (95, 62.3 + 4.5), (5, 62.3 - 4.5)):
+        tilt = np.radians(angle)
+        expected = view.cell_numbers(cells, 0, 60.0, np.array([-np.sin(tilt), -1e-9, np.cos(tilt)]))
+        mirrored = view.cell_numbers(cells, 0, 60.0, np.array([-np.sin(tilt), 1e-9, np.cos(tilt)]))
+        assert numbers[50, place] in (expected, mirrored)
+    # Beyond the horizon there is nothing.
+    assert (view.magnified(cells, 0, 60.0, 89.0, 5.0, 20) == view.OUTSIDE).any()

@@ -40,8 +40,8 @@ def measure(study):
         "internal: difference",
         "direct: forward",
         "direct: Eq. 6",
-        "RMSE of all: forward",
-        "RMSE of all: Eq. 6",
+        "RMSE of all [sr^-1/2]: forward",
+        "RMSE of all [sr^-1/2]: Eq. 6",
     ]
     return Finding(
         [

@@ -69,7 +69,7 @@ def measure(study):
         ],
         remarks=[
             _REMARK,
-            "RMSE of patinas (α₀ = α₁ = 0.2, grey τ) by channel; green and blue are equal:",
+            "RMSE [sr^-1/2] of patinas (α₀ = α₁ = 0.2, grey τ) by channel; green and blue are equal:",
             _rise(study),
         ],
     )
@@ -122,7 +122,7 @@ def _draw(found):
 
 def _line(axes, by_theta, name, more=None):
     values = [green_over_red(energies) for energies in by_theta.values()]
-    look = {"label": name, "color": style.COLOURS.get(name, "black")} | (more or {})
-    look |= {"linestyle": "--"} if name == "simulation" else {}
+    marks = {"color": "black", "marker": ".", "linestyle": "--"} if name == "simulation" else style.look(name).mark(4.0)
+    look = {"label": name} | marks | (more or {})
     errors = 2.0 * np.array([value.stderr for value in values])
-    axes.errorbar(list(by_theta), [value.value for value in values], yerr=errors, marker=".", linewidth=1.2, **look)
+    axes.errorbar(list(by_theta), [value.value for value in values], yerr=errors, linewidth=1.2, **look)

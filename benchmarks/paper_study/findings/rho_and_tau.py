@@ -50,8 +50,8 @@ def measure(study):
             "As declared, C and A differ in colour more than in size: τ is (0.05, 0.1, 0.8) or 0.2, ρ is (0.1, 0.6, "
             "0.1) or 0.5.",
             study.rmse_table(plastics, MODELS),
-            "Hence a second look with both grey and varied one at a time (α₀ = 0.05). RMSE, and relative to the norm "
-            "of the simulation:",
+            "Hence a second look with both grey and varied one at a time (α₀ = 0.05). RMSE [sr^-1/2], and relative to "
+            "the norm of the simulation:",
             _varied({"RMSE": size, "relative": relative}),
         ],
         because=_BECAUSE,

@@ -25,7 +25,13 @@ def measure(study):
         answers[label] = YES if difference["elek10"] == 0.0 else NO
         errors = [number(study.errors.rmse(m, "elek10")) for m in pair]
         rows.append([label, f"{difference['elek10']:g}", f"{difference['ww09']:.0f}", *errors])
-    head = ["metal", "elek10: difference", "ww09: difference", "elek10: RMSE, frosted", "elek10: RMSE, patina"]
+    head = [
+        "metal",
+        "elek10: difference",
+        "ww09: difference",
+        "elek10: RMSE [sr^-1/2], frosted",
+        "elek10: RMSE [sr^-1/2], patina",
+    ]
     return Finding(
         [Claim("internal paths identical in every cell", answers)],
         [

@@ -80,7 +80,7 @@ def measure(study):
         ],
         [
             study.rmse_table(slabs, [MODEL, SNELL]),
-            "RMSE in blue and of the luminance:",
+            "RMSE [sr^-1/2] in blue and of the luminance:",
             table(["material", "blue", "luminance"], blue_rows),
             "Transmitted lobe of the green channel: interquartile range of the sine of the angle in the plane of "
             "incidence, and direction of the peak in degrees.",

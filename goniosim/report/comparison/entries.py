@@ -6,7 +6,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from ...result import Cells
-from ..drawing import inplane, panels, tone, view
+from ..drawing import inplane, panels, tone, view, zoom
 from . import labels
 
 
@@ -19,16 +19,20 @@ class Entry:
     label : str
     model : str or None
         None for the simulation.
-    options : str
+    options_text : str
         Options of the model that are not at their default.
     slices : ndarray, shape (C, R, K)
         BSDF in 1/sr.
     angle, f, sigma : ndarray, shape (P,)
-        Luminance along the plane of incidence and its standard error, see `inplane`.
+        Luminance along the plane of incidence and its standard error, see `inplane`; NaN where nothing was seen.
     highest : float
         Where the curve is not mere noise, in 1/sr; 1 in the dark. A Dirac part does not count.
     dirac : int or None
         The cell that holds light leaving in exactly one direction.
+    unseen : ndarray of bool, shape (R, K), or None
+        Cells that no path hit, see `panels.unseen_cells`.
+    narrow : (float, float) or None
+        Range of angles in degrees to be enlarged, see `zoom.window`.
     error : str
         RMSE of the model in this direction, if it was compared, in words.
     converged : bool
@@ -37,13 +41,15 @@ class Entry:
 
     label: str
     model: str | None
-    options: str
+    options_text: str
     slices: np.ndarray
     angle: np.ndarray
     f: np.ndarray
     sigma: np.ndarray
     highest: float
     dirac: int | None
+    unseen: np.ndarray | None = None
+    narrow: tuple | None = None
     error: str = ""
     converged: bool = True
 
@@ -72,6 +78,23 @@ class Direction:
         if self.entries[0].model is None:
             return self.entries[0]
         return sorted(self.entries, key=lambda entry: entry.highest)[len(self.entries) // 2]
+
+    def coinciding(self, tolerance):
+        """For each entry the numbers of earlier ones whose curves it nowhere leaves.
+
+        Parameters
+        ----------
+        tolerance : float
+            Of the remapped luminance, as in `panels.coinciding`.
+
+        Returns
+        -------
+        list of set of int
+            The simulation has its noise, and coincides with nothing.
+        """
+        found = panels.coinciding([(entry.angle, tone.remap(entry.f)) for entry in self.entries], tolerance)
+        noisy = {number for number, entry in enumerate(self.entries) if entry.model is None}
+        return [set() if number in noisy else each - noisy for number, each in enumerate(found)]
 
     def disk(self, pixels):
         """Cells seen from above, see `view.disk`."""
@@ -134,6 +157,30 @@ def of_models(material, models, number):
     return Direction(number, theta_deg, material.cells, entries)
 
 
+def twins(directions, tolerances):
+    """The entry, if any, whose curve covers that of each entry in all of some directions.
+
+    Parameters
+    ----------
+    directions : list of Direction
+    tolerances : list of float
+        For each of them, see `Direction.coinciding`.
+
+    Returns
+    -------
+    list of (Entry or None)
+        With the same options if there is such a one.
+    """
+    entries = directions[0].entries
+    found = [each.coinciding(tolerance) for each, tolerance in zip(directions, tolerances, strict=True)]
+    chosen = []
+    for entry, earlier in zip(entries, zip(*found, strict=True), strict=True):
+        common = [entries[number] for number in sorted(set.intersection(*earlier))]
+        common.sort(key=lambda other: other.options_text != entry.options_text)
+        chosen.append(common[0] if common else None)
+    return chosen
+
+
 def _entry(cells, number, theta_deg, component, label, model, options, slices, **error):
     """See a component, which may be stored in parts."""
     if component in slices:
@@ -145,11 +192,16 @@ def _entry(cells, number, theta_deg, component, label, model, options, slices, *
     dirac = next((panels.dirac_cell(part, number) for part in parts if part.contains_delta), None)
     curve = partial(inplane.plane_of_incidence, cells, number, theta_deg)
     angle, f, sigma = curve(_luminance(bsdf), _luminance(stderr))
-    scaling = f, sigma
-    if dirac is not None:
-        _, *scaling = curve(_luminance(panels.without_cell(bsdf, dirac)), _luminance(stderr))
-    highest = inplane.highest(*scaling, panels.BAND_SIGMAS) or 1.0
-    return Entry(label, model, options, bsdf, angle, f[:, 0], sigma[:, 0], highest, dirac, **error)
+    clear = panels.without_cell(bsdf, dirac)
+    scaling = curve(_luminance(clear), _luminance(stderr))
+    highest = inplane.highest(*scaling[1:], panels.BAND_SIGMAS) or 1.0
+    # What leaves in one exact direction and nothing else has no shape to be seen.
+    narrow = None if dirac is not None and clear is bsdf else zoom.of_channels(*scaling)
+    unseen = panels.unseen_cells(parts, cells, number)
+    f, sigma = f[:, 0], sigma[:, 0]
+    if unseen is not None:
+        f = np.where(f > 0.0, f, np.nan)
+    return Entry(label, model, options, bsdf, angle, f, sigma, highest, dirac, unseen, narrow, **error)
 
 
 def _luminance(slices):

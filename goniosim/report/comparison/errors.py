@@ -4,19 +4,24 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import NullFormatter
+from matplotlib.patheffects import withStroke
 
 from ...compare.summary import CATEGORIES
-from ..drawing import panels
+from ..drawing import letters, panels
 from ..drawing.legend import title
-from . import legend, style
+from . import labels, legend, style, ticks
 from .labels import short_names
 
 # Inches.
-LEFT, GAP, FOOTER = 0.95, 0.3, 0.15
-PANEL_HEIGHT, PANEL_TOP, PER_MATERIAL, NARROWEST = 2.5, 0.45, 0.34, 1.5
-# Below a panel stand the names, at a slant: room in any case, and for each letter.
-NAMES, LETTER = 0.4, 0.06
+LEFT, GAP, FOOTER = 1.05, 0.3, 0.15
+PANEL_HEIGHT, PANEL_TOP, PANEL_TITLE, NARROWEST, NARROWEST_FIGURE, WIDEST = 2.6, 0.3, 0.2, 1.5, 8.5, 14.0
+# Each material has room for a mark of each model; its name takes room as well.
+PER_MARK, BETWEEN, NAME_LINE = 0.085, 0.14, 0.14
+# Below a panel stand the names, at a slant of 60 degrees.
+NAMES, NAME_SIZE, LONGEST_NAME, SLANT = 0.35, 7.0, 1.7, np.sin(np.radians(60.0))
+SIGMAS = 2.0
+NOISE = "noise of the simulation, taken out: marks in it are significant"
+BAND, FLOOR = "0.92", "0.6"
 
 COMPONENTS = {
     "reflection/internal": "internal paths",
@@ -36,24 +41,48 @@ def errors_figure(summaries):
     -------
     matplotlib.figure.Figure
     """
-    rows = [
-        (category, _by_alpha(summaries, category))
-        for category in CATEGORIES
-        if any(summary.category == category and summary.overall() for summary in summaries)
-    ]
-    widths = [[max(NARROWEST, PER_MATERIAL * (len(group) + 1)) for _, group in groups] for _, groups in rows]
-    width = max(LEFT + max(sum(row) + GAP * len(row) for row in widths), 8.5)
-    heights = [PANEL_TOP + PANEL_HEIGHT + NAMES + LETTER * _longest(groups) for _, groups in rows]
+    rows = [(category, line) for category in CATEGORIES for line in _lines(_by_alpha(summaries, category))]
+    full = LEFT + max(sum(map(_width, line)) + GAP * len(line) for _, line in rows)
+    width = min(max(full, NARROWEST_FIGURE), WIDEST)
     handles = _handles(summaries)
-    top = legend.height_needed(width, len(handles))
+    top = legend.height_needed(width, handles)
+    heights = [_height(line) for _, line in rows]
     figure = Figure(figsize=(width, top + sum(heights) + FOOTER))
     title(figure, "Error of published models against the simulation")
     legend.place(figure, handles)
-    for (category, groups), row_widths, row_height in zip(rows, widths, heights, strict=True):
-        stretch = (width - LEFT - GAP * len(row_widths)) / sum(row_widths)
-        _row(figure, top, category, groups, [stretch * panel for panel in row_widths])
-        top += row_height
+    for number, ((category, line), height) in enumerate(zip(rows, heights, strict=True)):
+        first = number == 0 or rows[number - 1][0] != category
+        _row(figure, top, category if first else "", line, _limits(summaries, category))
+        top += height
     return figure
+
+
+def _lines(groups):
+    """Panels that stand side by side: as many as there is room for."""
+    lines, room = [], 0.0
+    for group in groups:
+        taken = _width(group) + GAP
+        if not lines or room + taken > WIDEST - LEFT:
+            lines.append([])
+            room = 0.0
+        lines[-1].append(group)
+        room += taken
+    return lines
+
+
+def _width(group):
+    """Width in inches that a panel wants."""
+    _, materials = group
+    marks = max(len(summary.variants) for summary in materials)
+    names = max(name.count("\n") + 1 for name in _names(materials))
+    each = max(PER_MARK * marks + BETWEEN, NAME_LINE * (names + 1))
+    return max(NARROWEST, each * (len(materials) + 0.2))
+
+
+def _height(line):
+    longest = max(letters.width(name, NAME_SIZE) for _, materials in line for name in _names(materials))
+    lines = max(name.count("\n") + 1 for _, materials in line for name in _names(materials))
+    return PANEL_TOP + PANEL_TITLE + PANEL_HEIGHT + NAMES + SLANT * longest + 0.5 * NAME_LINE * lines
 
 
 def _by_alpha(summaries, category):
@@ -67,82 +96,82 @@ def _by_alpha(summaries, category):
 
 
 def _names(group):
-    return short_names([summary.name for summary in group])
+    names = short_names([summary.name for summary in group])
+    return [letters.broken(name, NAME_SIZE, LONGEST_NAME) for name in names]
 
 
-def _longest(groups):
-    return max(len(name) for _, group in groups for name in _names(group))
-
-
-def _row(figure, top, category, groups, widths):
-    height = figure.get_figheight()
-    shown = {COMPONENTS[summary.component]: None for _, group in groups for summary in group}
-    title = f"{category.capitalize()}: {', '.join(shown)}"
-    figure.text(
-        0.2 / figure.get_figwidth(), 1.0 - (top + 0.02) / height, title, fontsize=10.5, fontweight="bold", va="top"
-    )
-    low, high = _range([summary for _, group in groups for summary in group])
+def _row(figure, top, category, line, limits):
+    width, height = figure.get_size_inches()
+    shown = {COMPONENTS[summary.component]: None for _, group in line for summary in group}
+    if category:
+        words = f"{category.capitalize()}: {', '.join(shown)}"
+        figure.text(0.2 / width, 1.0 - (top + 0.02) / height, words, fontsize=10.5, fontweight="bold", va="top")
+    wanted = [_width(group) for group in line]
+    stretch = (width - LEFT - GAP * len(line)) / sum(wanted)
     left = LEFT
-    for number, ((alpha, group), width) in enumerate(zip(groups, widths, strict=True)):
-        axes = panels.place(figure, left, top + PANEL_TOP, width, PANEL_HEIGHT)
-        _panel(axes, group)
-        axes.set_yscale("log")
-        axes.set_ylim(low, high)
-        if high > 20.0 * low:
-            axes.yaxis.set_minor_formatter(NullFormatter())
+    for number, ((alpha, group), panel) in enumerate(zip(line, wanted, strict=True)):
+        axes = panels.place(figure, left, top + PANEL_TOP + PANEL_TITLE, stretch * panel, PANEL_HEIGHT)
+        ticks.logarithmic(axes, "y", *limits)
+        _panel(axes, group, stretch * panel)
         axes.set_title(f"α₀ = {alpha:g}", fontsize=9.5, pad=4)
         if number == 0:
-            axes.set_ylabel("RMSE [sr$^{-1/2}$]")
+            axes.set_ylabel(f"RMSE [{labels.UNIT}]")
         else:
             axes.tick_params(which="both", labelleft=False)
-        left += width + GAP
+        left += stretch * panel + GAP
 
 
-def _panel(axes, group):
+def _panel(axes, group, width):
     places = np.arange(len(group))
+    lowest = axes.get_ylim()[0]
     for place, summary in zip(places, group, strict=True):
-        floor = summary.overall()[0]["noise_floor"]
-        axes.fill_between([place - 0.5, place + 0.5], 1e-12, max(floor, 1e-12), color="0.88", linewidth=0.0)
+        floor = max(summary.overall()[0]["noise_floor"], 0.1 * lowest)
+        sides = [place - 0.47, place + 0.47]
+        axes.fill_between(sides, 0.1 * lowest, floor, color=BAND, linewidth=0.0)
+        axes.plot(sides, [floor, floor], color=FLOOR, linewidth=0.8, linestyle=":", zorder=2)
     variants = style.spread_out([variant for summary in group for variant in summary.variants])
+    # Side by side, but not further apart than it takes.
+    spread = min(0.84, 0.2 * len(variants) * len(group) / width)
     for number, variant in enumerate(variants):
-        shift = 0.5 * (number / max(len(variants) - 1, 1) - 0.5)
+        shift = spread * ((number + 0.5) / len(variants) - 0.5)
         line = []
         for place, summary in zip(places, group, strict=True):
             for row in summary.overall():
                 if summary.label_of(row) == variant.label:
                     _point(axes, place + shift, row, variant)
                     line.append((place + shift, row["rmse_upper" if row["below_noise"] else "rmse"]))
-        axes.plot(
-            *zip(*line, strict=True),
-            color=style.colour(variant),
-            alpha=0.35,
-            linewidth=0.7,
-            linestyle=style.line_style(variant),
-            zorder=2,
-        )
+        axes.plot(*zip(*line, strict=True), alpha=0.4, zorder=3, **style.of(variant).line(0.7))
     axes.set_xlim(-0.6, len(group) - 0.4)
-    axes.set_xticks(places, _names(group), rotation=60, ha="right", rotation_mode="anchor", fontsize=7)
+    look = {"rotation": 60, "ha": "right", "rotation_mode": "anchor", "fontsize": NAME_SIZE, "parse_math": False}
+    axes.set_xticks(places, _names(group), **look)
     axes.grid(axis="y", color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
 
 
 def _point(axes, x, row, variant):
-    colour = style.colour(variant)
-    look = {"color": colour, "marker": style.marker(variant), "markersize": 4.2, "zorder": 4}
-    if variant.options:
-        look |= {"markerfacecolor": "white", "markeredgewidth": 0.9}
+    look = style.of(variant)
+    colour = look.colour
     if row["below_noise"]:
-        # An upper limit: a bar with an arrow downwards.
+        # An upper limit: a bar with an arrow downwards, and no mark.
         axes.plot([x], [row["rmse_upper"]], marker="_", markersize=6, color=colour, zorder=4)
         arrow = {"arrowstyle": "->", "color": colour, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", (x, 0.55 * row["rmse_upper"]), (x, row["rmse_upper"]), arrowprops=arrow)
         return
-    # Bars of the length of one standard error are mostly smaller than the marker.
-    axes.errorbar([x], [row["rmse"]], yerr=[row["rmse_stderr"]], elinewidth=0.9, linestyle="", **look)
+    low = max(row["rmse"] - SIGMAS * row["rmse_stderr"], 0.1 * axes.get_ylim()[0])
+    bar = [[row["rmse"] - low], [SIGMAS * row["rmse_stderr"]]]
+    axes.errorbar([x], [row["rmse"]], yerr=bar, ecolor=colour, elinewidth=1.0, capsize=2.2, linestyle="", zorder=4)
     if not row["converged"] and row["rmse_converged"] > 0.0:
         axes.plot([x, x], [row["rmse"], row["rmse_converged"]], color=colour, linewidth=0.8, zorder=3)
         axes.plot([x], [row["rmse_converged"]], marker="x", markersize=4.5, color=colour, zorder=4)
+    # The halo lifts a mark out of the band: an error from which the noise was taken may lie far below it.
+    halo = [withStroke(linewidth=2.6, foreground="white")]
+    axes.plot([x], [row["rmse"]], linestyle="", zorder=5, path_effects=halo, **look.mark(4.6))
+
+
+def _limits(summaries, category):
+    """Limits of all panels of a category."""
+    return _range([summary for summary in summaries if summary.category == category and summary.overall()])
 
 
 def _range(summaries):
@@ -150,32 +179,23 @@ def _range(summaries):
     values = [row["rmse_upper"] if row["below_noise"] else row["rmse"] for row in rows]
     values += [row["rmse_converged"] for row in rows if not row["below_noise"]]
     values = [value for value in values if value > 0.0] or [1.0]
+    values += [row["rmse"] + SIGMAS * row["rmse_stderr"] for row in rows if not row["below_noise"]]
     low = min([*values, *(row["noise_floor"] for row in rows if row["noise_floor"] > 0.0)])
     return 0.5 * low, 2.0 * max(values)
 
 
 def _handles(summaries):
     rows = [row for summary in summaries for row in summary.overall()]
-    handles = []
-    for variant in style.spread_out([variant for summary in summaries for variant in summary.variants]):
-        face = {"markerfacecolor": "white"} if variant.options else {}
-        handles.append(
-            Line2D(
-                [],
-                [],
-                color=style.colour(variant),
-                marker=style.marker(variant),
-                markersize=5,
-                linestyle=style.line_style(variant),
-                linewidth=0.8,
-                label=variant.label,
-                **face,
-            )
-        )
-    handles.append(Patch(facecolor="0.88", label="noise floor of the simulation"))
+    variants = style.spread_out([variant for summary in summaries for variant in summary.variants])
+    handles = [
+        Line2D([], [], label=variant.label, **style.of(variant).mark(5.0) | style.of(variant).line(0.9))
+        for variant in variants
+    ]
+    look = {"color": "0.3", "linestyle": ""}
+    handles.append(Line2D([], [], marker="|", markersize=9, label=f"± {SIGMAS:g} standard errors", **look))
+    handles.append(Patch(facecolor=BAND, edgecolor=FLOOR, linestyle=":", label=NOISE))
     if any(row["below_noise"] for row in rows):
-        label = "below noise: upper limit"
-        handles.append(Line2D([], [], color="0.3", marker="_", linestyle="", label=label))
+        handles.append(Line2D([], [], marker="_", label="below noise: upper limit", **look))
     if not all(row["converged"] for row in rows):
-        handles.append(Line2D([], [], color="0.3", marker="x", linestyle="", label="converged integration"))
+        handles.append(Line2D([], [], marker="x", label="converged integration", **look))
     return handles

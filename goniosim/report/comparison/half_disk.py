@@ -6,13 +6,17 @@ from matplotlib.patches import Arc
 from ..drawing import panels, tone
 from . import style
 
+# Marks along a curve: so far apart, as a share of the panel.
+APART = 0.22
 # Height over width of the axes.
 ASPECT = 1.1 / 2.04
 # Models that go far beyond the reference leave the picture: it is the reference that sets the scale.
 HEADROOM = 1.35
+# Half the width of a line, in inches.
+LINE = 0.01
 SCALE = (
     "distance from the centre: luminance by log(1 + √f), labels in 1/sr; dot: light, grey dashes: mirror direction; "
-    "models that agree: the later one thinner, on top"
+    "models that agree: the later one thinner, on top, its marks elsewhere"
 )
 
 
@@ -29,14 +33,20 @@ def draw(axes, direction, size=1.0):
     """
     radius = tone.remap(direction.scaling.highest) * HEADROOM
     _scale(axes, radius, direction.theta_deg, size)
-    for entry, look in zip(direction.entries, style.lines(direction.entries), strict=True):
+    count = len(direction.entries)
+    for number, (entry, look) in enumerate(zip(direction.entries, style.lines(direction.entries), strict=True)):
         if entry.model is None:
             _band(axes, entry)
-        _polar(axes, entry, zorder=5 if entry.model is None else 3, **look)
+        _polar(axes, entry, zorder=5 if entry.model is None else 3, markevery=(APART * number / count, APART), **look)
+
+
+def tolerance(direction, width):
+    """Distance in remapped luminance at which two curves look like one, in a panel of a width in inches."""
+    return LINE / width * 2.04 * HEADROOM * tone.remap(direction.scaling.highest)
 
 
 def _band(axes, entry):
-    low, high = (tone.remap(entry.f + sign * panels.BAND_SIGMAS * entry.sigma) for sign in (-1.0, 1.0))
+    low, high = (tone.remap(np.nan_to_num(entry.f) + sign * panels.BAND_SIGMAS * entry.sigma) for sign in (-1.0, 1.0))
     tilt = np.radians(entry.angle)
     outline = np.concatenate([high, low[::-1]])
     around = np.concatenate([tilt, tilt[::-1]])
@@ -47,6 +57,9 @@ def _polar(axes, entry, **look):
     tilt, r = np.radians(entry.angle), tone.remap(entry.f)
     (line,) = axes.plot(r * np.sin(tilt), r * np.cos(tilt), **look)
     line.set_clip_path(axes.patch)
+    alone = panels.isolated(r)
+    (r, tilt), look = (r[alone], tilt[alone]), {"color": look["color"], "zorder": look["zorder"]}
+    axes.plot(r * np.sin(tilt), r * np.cos(tilt), linestyle="", marker=".", markersize=5.0, **look)
 
 
 def _scale(axes, radius, theta_deg, size):

@@ -1,6 +1,11 @@
 """Words in figures: short names of materials, names and errors of models."""
 
 from .. import text
+from ..drawing import letters
+
+# Points.
+NAME_SIZE, ERROR_SIZE = 7.5, 7.0
+UNIT = "sr$^{-1/2}$"
 
 
 def short_names(names):
@@ -46,15 +51,45 @@ def error_text(rmse, stderr, upper, significant, converged):
     return text.with_error(rmse, stderr) + ("" if converged else " *")
 
 
-def above(disk, entry):
-    """Write the name of an entry above its view, the options of a second reading on a line of their own."""
-    name = entry.label.rstrip("]").replace("[", "\n").replace(",", "\n")
-    disk.above(name, fontsize=7.5)
+def stacked(entry, room):
+    """The name of an entry, each option of a second reading on a line of its own, and long ones on several.
+
+    Parameters
+    ----------
+    entry : goniosim.report.comparison.entries.Entry
+    room : float
+        In inches.
+
+    Returns
+    -------
+    str
+    """
+    names = entry.label.rstrip("]").replace("[", "\n").replace(",", "\n").split("\n")
+    return "\n".join(letters.broken(name, NAME_SIZE, room) for name in names)
 
 
-def below(disk, entry):
+def lines(entries, room):
+    """Most lines that the names of entries take, see `stacked`."""
+    return max(stacked(entry, room).count("\n") + 1 for entry in entries)
+
+
+def above(disk, entry, room):
+    """Write the name of an entry above its view."""
+    words = stacked(entry, room)
+    disk.above(words, fontsize=letters.fitting(words, NAME_SIZE, room), linespacing=1.1)
+
+
+def below(disk, entry, room):
     """Write the error of an entry below its view."""
-    disk.below(entry.error, fontsize=7)
+    disk.below(entry.error, fontsize=letters.fitting(entry.error, ERROR_SIZE, room))
+
+
+def with_twin(entry, twin):
+    """The name of an entry, and of the entry whose curve covers its own: ``bati19_belcour = belcour18_forward``."""
+    if twin is None:
+        return entry.label
+    same = twin.options_text == entry.options_text != ""
+    return f"{entry.label} = {twin.model}[same]" if same else f"{entry.label} = {twin.label}"
 
 
 def explanation(directions):
@@ -62,5 +97,5 @@ def explanation(directions):
     errors = [entry for direction in directions for entry in direction.entries if entry.error]
     if not errors:
         return ""
-    words = "; below: RMSE of the direction [1/√sr] ± standard error"
+    words = "; below: RMSE of the direction [sr^-1/2] ± standard error"
     return words + ("" if all(entry.converged for entry in errors) else "; *: sub-cells too coarse, see errors.csv")

@@ -4,8 +4,8 @@ from matplotlib.figure import Figure
 
 from .. import text
 from ..drawing import panels
-from ..drawing.legend import caption, title
-from . import half_disk, legend
+from ..drawing.legend import caption, caption_height, title
+from . import entries, half_disk, legend
 
 # Inches.
 WIDTH, COLUMNS, MARGIN, ROOM = 3.5, 4, 0.25, 0.5
@@ -29,9 +29,12 @@ def lobes_figure(name, component, directions):
     columns = min(COLUMNS, max(len(directions), 2))
     rows = -(-len(directions) // columns)
     width = MARGIN + columns * (WIDTH + MARGIN)
-    handles = legend.curves(directions[0].entries)
-    top = legend.height_needed(width, len(handles))
-    figure = Figure(figsize=(width, top + rows * (HEIGHT + ROOM) + 0.3))
+    twins = entries.twins(directions, [half_disk.tolerance(direction, WIDTH) for direction in directions])
+    handles = legend.curves(directions[0].entries, twins)
+    narrow = any(direction.scaling.narrow for direction in directions)
+    words = half_disk.SCALE + ("; narrow lobes: enlarged in the figure of each direction" if narrow else "")
+    top = legend.height_needed(width, handles)
+    figure = Figure(figsize=(width, top + rows * (HEIGHT + ROOM) + caption_height(words, width)))
     title(figure, f"{name},  {component} in the plane of incidence")
     legend.place(figure, handles)
     for number, direction in enumerate(directions):
@@ -40,5 +43,5 @@ def lobes_figure(name, component, directions):
         axes = panels.place(figure, left, down, WIDTH, HEIGHT)
         half_disk.draw(axes, direction)
         axes.set_title(f"{text.degrees(direction.theta_deg)}°", fontsize=10, pad=3, loc="left")
-    caption(figure, half_disk.SCALE)
+    caption(figure, words)
     return figure

@@ -3,6 +3,8 @@
 from .. import text
 from .labels import error_text
 
+UNIT = "[sr^-1/2]"
+
 
 def ranking(summaries):
     """Rank the models on every material by their error.
@@ -26,12 +28,12 @@ def _material(summary):
     if rows:
         header = [
             "model",
-            "RMSE",
+            f"RMSE\n{UNIT}",
             "relative\nRMSE",
-            "converged",
+            f"converged\n{UNIT}",
             "albedo\nerror",
             "time per\nslice",
-            "RMSE of all\nreflection",
+            f"RMSE of all\nreflection {UNIT}",
         ]
         total = {summary.label_of(row): row for row in _totals(summary)}
         same = summary.component == "reflection"

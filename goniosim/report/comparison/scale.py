@@ -27,10 +27,12 @@ class Scale:
         self._slices = [panels.without_cell(entry.slices, entry.dirac) for entry in direction.entries]
         self._own = self._slices[direction.entries.index(direction.scaling)]
 
-    @property
-    def explanation(self):
-        """What grey cells are, if there are any."""
-        return "; grey: cells cut by the horizon" if (self._numbers == view.INVALID).any() else ""
+    def explanation(self, bands=True):
+        """What hatched cells are, and cells that were not hit, if there are any; with or without ``bands``."""
+        words = "; hatched: cells cut by the horizon" if (self._numbers == view.INVALID).any() else ""
+        unseen = any(entry.unseen is not None for entry in self._direction.entries)
+        colours = "slate, or pale among the bands" if bands else "slate"
+        return words + (f"; {colours}: cells without a hit" if unseen else "")
 
     @cached_property
     def white(self):
@@ -50,8 +52,11 @@ class Scale:
 
     def draw_colour(self, disk, entry):
         """Draw an entry in colour."""
-        disk.colour(entry.slices, self._numbers, self._direction.theta_deg, self.white, self._direction.spot(entry))
+        disk.colour(entry.slices, self._numbers, self._direction.theta_deg, self.white, **self._marks(entry))
 
     def draw_bands(self, disk, entry):
         """Draw the luminance of an entry in bands."""
-        disk.bands(entry.slices, self._numbers, self._direction.theta_deg, self.bands, self._direction.spot(entry))
+        disk.bands(entry.slices, self._numbers, self._direction.theta_deg, self.bands, **self._marks(entry))
+
+    def _marks(self, entry):
+        return {"spot": self._direction.spot(entry), "unseen": entry.unseen}

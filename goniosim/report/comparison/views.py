@@ -4,13 +4,13 @@ from matplotlib.figure import Figure
 
 from .. import text
 from ..drawing.disks import ASPECT, Board
-from ..drawing.legend import caption, title
+from ..drawing.legend import caption, caption_height, title
 from . import labels, style
 from .scale import Scale
 
 PIXELS = 160
 # Inches.
-DISK, LEFT, HEADER, ROW, FOOTER = 1.42, 0.5, 0.85, 1.68, 0.45
+DISK, LEFT, HEADER, LINE, ROW = 1.42, 0.55, 0.65, 0.125, 1.68
 STEP = DISK * ASPECT
 
 
@@ -30,21 +30,24 @@ def views_figure(name, component, directions):
     """
     entries = directions[0].entries
     width = max(LEFT + STEP * len(entries) + 0.2, 6.0)
-    figure = Figure(figsize=(width, HEADER + ROW * len(directions) + FOOTER), dpi=style.DISKS_DPI)
+    scales = [Scale(direction, PIXELS) for direction in directions]
+    by = ", set by the simulation" if entries[0].model is None else ""
+    grey = max((scale.explanation(bands=False) for scale in scales), key=len)
+    words = f"colour by log(1 + √f), a scale for each row{by}{grey}{labels.explanation(directions)}"
+    header = HEADER + LINE * labels.lines(entries, STEP - 0.06)
+    figure = Figure(figsize=(width, header + ROW * len(directions) + caption_height(words, width)), dpi=style.DISKS_DPI)
     title(figure, f"{name},  {component}")
     height = figure.get_figheight()
-    board, scales = Board(figure), [Scale(direction, PIXELS) for direction in directions]
+    board = Board(figure)
     for row, (direction, scale) in enumerate(zip(directions, scales, strict=True)):
-        top = HEADER + ROW * row
+        top = header + ROW * row
         for column, entry in enumerate(direction.entries):
             disk = board.disk(LEFT + column * STEP, top, DISK)
             scale.draw_colour(disk, entry)
             if row == 0:
-                labels.above(disk, entry)
-            labels.below(disk, entry)
+                labels.above(disk, entry, STEP - 0.06)
+            labels.below(disk, entry, STEP - 0.06)
         y = 1.0 - (top + 0.5 * DISK) / height
         figure.text(0.12 / width, y, f"{text.degrees(direction.theta_deg)}°", fontsize=10, va="center")
-    by = ", set by the simulation" if entries[0].model is None else ""
-    grey = max((scale.explanation for scale in scales), key=len)
-    caption(figure, f"colour by log(1 + √f), a scale for each row{by}{grey}{labels.explanation(directions)}")
+    caption(figure, words)
     return figure

@@ -41,7 +41,7 @@ def scale(low, high):
     matplotlib.cm.ScalarMappable
     """
     levels = tone.levels(low, high)
-    colours = ListedColormap(colormaps["turbo"](np.linspace(0.04, 0.96, len(levels) + 1)))
+    colours = ListedColormap(colormaps["viridis"](np.linspace(0.0, 1.0, len(levels) + 1)))
     # One band below the first level and one above the last.
     edges = [min(0.0, levels[0]), *levels, 1.5 * levels[-1]]
     return ScalarMappable(BoundaryNorm(edges, colours.N), colours)

@@ -7,17 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, FancyArrowPatch
+from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
 from matplotlib.patheffects import withStroke
 
 from . import tone, view
-from .panels import DIRAC, INK, INVALID_GREY, LIGHT
+from .panels import DIRAC, INK, INVALID_GREY, INVALID_STRIPE, LIGHT, UNSEEN
 
 # Room around a disk in units of its radius; the light arrives from the left.
 MARGIN, ARROW_TAIL = 1.04, 1.3
 # Width over height of a disk with its room.
 ASPECT = (ARROW_TAIL + MARGIN) / (2.0 * MARGIN)
 RINGS_DEG = (30.0, 60.0)
+# Stripes of the hatch of invalid cells across a disk.
+STRIPES = 60
 
 
 class Board:
@@ -51,6 +53,27 @@ class Board:
         radius = 0.5 * height / MARGIN
         return Disk(self._axes, left + ARROW_TAIL * radius, top + 0.5 * height, radius)
 
+    def closer(self, middle, top, size, slices, numbers, scale, unseen, words):
+        """Draw a lobe enlarged, in bands of luminance.
+
+        Parameters
+        ----------
+        middle, top, size : float
+            Of the square, in inches.
+        slices, scale, unseen
+            As in `Disk.bands`.
+        numbers : ndarray of int64, shape (pixels, pixels)
+            From `view.magnified`.
+        words : str
+            To stand below.
+        """
+        image = _image(_band_colours(slices, numbers, scale), numbers, unseen, UNSEEN[1])
+        extent = (middle - 0.5 * size, middle + 0.5 * size, top + size, top)
+        self._axes.imshow(image, extent=extent, aspect="auto", interpolation="antialiased")
+        frame = Rectangle((extent[0], top), size, size, fill=False, color=INK, linewidth=0.8)
+        self._axes.add_artist(frame)
+        self._axes.text(middle, top + size + 0.02, words, ha="center", va="top", color="0.3", fontsize=7)
+
 
 @dataclass(frozen=True)
 class Disk:
@@ -61,7 +84,7 @@ class Disk:
     y: float
     radius: float
 
-    def colour(self, slices, numbers, theta_deg, white, spot=None):
+    def colour(self, slices, numbers, theta_deg, white, spot=None, unseen=None):
         """Draw a slice in remapped colours.
 
         Parameters
@@ -76,39 +99,36 @@ class Disk:
             BSDF shown at full brightness, in 1/sr.
         spot : ndarray of 3 floats, optional
             Direction of a Dirac part, to be ringed: its cell may be too small to be seen.
+        unseen : ndarray of bool, shape (R, K), optional
+            Cells that were not hit, from `panels.unseen_cells`.
         """
-        self._show(tone.exposed(view.pixel_values(slices, numbers), white), numbers)
+        self._show(tone.exposed(view.pixel_values(slices, numbers), white), numbers, unseen, UNSEEN[0])
         self._furnish(theta_deg, spot)
 
-    def bands(self, slices, numbers, theta_deg, scale, spot=None):
+    def bands(self, slices, numbers, theta_deg, scale, spot=None, unseen=None):
         """Draw the luminance of a slice in bands of false colours between round values.
 
         Parameters
         ----------
-        slices, numbers, theta_deg, spot
+        slices, numbers, theta_deg, spot, unseen
             As in `colour`.
         scale : matplotlib.cm.ScalarMappable or None
             From `bands.scale`; None draws black.
         """
-        shown = tone.luminance(view.pixel_values(slices, numbers))
-        colours = np.zeros((*shown.shape, 3))
-        if scale is not None:
-            inside_the_last = 0.5 * sum(scale.norm.boundaries[-2:])
-            colours = scale.to_rgba(np.minimum(shown, inside_the_last))[..., :3]
-        self._show(colours, numbers)
+        self._show(_band_colours(slices, numbers, scale), numbers, unseen, UNSEEN[1])
         self._furnish(theta_deg, spot)
 
     def above(self, words, **look):
         """Write above the disk."""
+        look["parse_math"] = False
         self.axes.text(self.x, self.y - 1.07 * self.radius, words, ha="center", va="bottom", **look)
 
     def below(self, words, **look):
         """Write below the disk."""
         self.axes.text(self.x, self.y + 1.07 * self.radius, words, ha="center", va="top", color="0.3", **look)
 
-    def _show(self, colours, numbers):
-        image = np.dstack([colours, numbers != view.OUTSIDE])
-        image[numbers == view.INVALID, :3] = INVALID_GREY
+    def _show(self, colours, numbers, unseen, unseen_colour):
+        image = _image(colours, numbers, unseen, unseen_colour)
         r = self.radius
         extent = (self.x - r, self.x + r, self.y + r, self.y - r)
         self.axes.imshow(image, extent=extent, aspect="auto", interpolation="antialiased")
@@ -116,7 +136,7 @@ class Disk:
     def _furnish(self, theta_deg, spot):
         """Rim, rings at 30 and 60 degrees, the light as an arrow outside and a ring where it stands."""
         for ring in RINGS_DEG:
-            self._circle(np.sin(np.radians(ring)), color="white", alpha=0.35, linewidth=0.6)
+            self._circle(np.sin(np.radians(ring)), color="0.6", alpha=0.6, linewidth=0.6)
         self._circle(1.0, color=INK, linewidth=1.2)
         if spot is not None:
             # Turned by half a circle, and downwards is positive.
@@ -143,3 +163,22 @@ class Disk:
     def _ring(self, x, y, **look):
         place = [self.x + x * self.radius], [self.y + y * self.radius]
         self.axes.plot(*place, "o", markerfacecolor="none", **look)
+
+
+def _image(colours, numbers, unseen, unseen_colour):
+    """Colours and opacity of all pixels: what was not hit, and what has no value, in colours of their own."""
+    image = np.dstack([colours, numbers != view.OUTSIDE])
+    if unseen is not None:
+        image[(numbers >= 0) & unseen.ravel()[np.maximum(numbers, 0)], :3] = unseen_colour
+    across = np.add(*np.indices(numbers.shape)) * STRIPES // len(numbers)
+    image[numbers == view.INVALID, :3] = INVALID_GREY
+    image[(numbers == view.INVALID) & (across % 2 == 1), :3] = INVALID_STRIPE
+    return image
+
+
+def _band_colours(slices, numbers, scale):
+    shown = tone.luminance(view.pixel_values(slices, numbers))
+    if scale is None:
+        return np.zeros((*shown.shape, 3))
+    inside_the_last = 0.5 * sum(scale.norm.boundaries[-2:])
+    return scale.to_rgba(np.minimum(shown, inside_the_last))[..., :3]

@@ -1,27 +1,37 @@
 """Curves in the plane of incidence, and what all panels share: colours, places, the Dirac part."""
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.patheffects import withStroke
 
 from .. import text
-from . import tone
+from . import letters, tone
 
-INVALID_GREY = (0.62, 0.62, 0.62)
+# Cells without a value are hatched, so that no grey of a picture looks like them.
+INVALID_GREY, INVALID_STRIPE = (0.62, 0.62, 0.62), (0.78, 0.78, 0.78)
+# Cells that no path hit: in pictures in colour, and among bands.
+UNSEEN = ((0.15, 0.18, 0.27), (0.93, 0.93, 0.93))
 INK = "#333333"
 LIGHT = "#ffc400"
 LIGHT_STYLE = {"color": LIGHT, "markeredgecolor": INK, "markeredgewidth": 0.7}
 DIRAC = "#ff5fd2"
 STRAIGHT_ON = {"color": "0.55", "linewidth": 0.9, "linestyle": (0, (4, 3))}
-CHANNEL_COLOURS = {
-    "R": "#d1242f",
-    "G": "#2a9d3a",
-    "B": "#2563c9",
-    "RG": "#a37a00",
-    "RB": "#8e3bb0",
-    "GB": "#0f8a93",
-    "RGB": INK,
+# Colour and dash of a channel: each of them tells the channels apart, also where their curves coincide.
+CHANNEL_LOOKS = {
+    "R": ("#d1242f", "-"),
+    "G": ("#009e73", (0, (5.0, 2.5))),
+    "B": ("#2563c9", (0, (1.3, 2.2))),
+    "RG": ("#a37a00", (0, (7.0, 2.0, 1.3, 2.0))),
+    "RB": ("#8e3bb0", (0, (7.0, 2.0, 1.3, 2.0))),
+    "GB": ("#0f8a93", (0, (7.0, 2.0, 1.3, 2.0))),
+    "RGB": (INK, "-"),
 }
-OTHER_COLOURS = ("#333333", "#b8860b", "#7b3fa0", "#008b8b")
+# For other channels; their colours run from dark to bright.
+OTHER_DASHES = ("-", (0, (5.0, 2.5)), (0, (1.3, 2.2)), (0, (7.0, 2.0, 1.3, 2.0)))
+MOST_NAMED = 12
 BAND_SIGMAS = 2.0
+# The range of angles that a closer look shows.
+ENLARGED = {"facecolor": "#ffc400", "alpha": 0.25, "linewidth": 0.0}
 
 
 def place(figure, left, top, width, height):
@@ -44,14 +54,28 @@ def curves(axes, channels, angle, f, sigma, sampled):
     sampled : bool
         Whether nothing seen leaves a gap; an integrated component is really zero there.
     """
-    for order, (name, c) in enumerate(text.channel_groups(channels, [f, sigma])):
-        colour = channel_colour(name, c)
+    groups = text.channel_groups(channels, [f, sigma])
+    # The bands of many channels would hide each other.
+    alpha = min(0.25, 0.75 / len(groups))
+    single = all(len(channel) == 1 for channel in channels)
+    for order, (name, c) in enumerate(groups):
+        colour, dash = channel_look(name, c, len(channels))
         low, high = (tone.remap(f[:, c] + sign * BAND_SIGMAS * sigma[:, c]) for sign in (-1.0, 1.0))
         seen = (f[:, c] > 0.0) | (not sampled)
-        axes.fill_between(angle, low, high, where=seen, color=colour, alpha=0.25, linewidth=0.0)
+        axes.fill_between(angle, low, high, where=seen, color=colour, alpha=alpha, linewidth=0.0)
         line = np.where(seen, tone.remap(f[:, c]), np.nan)
+        label = " = ".join(name if single else name.split("+"))
         # Later lines are thinner, so that those that nearly agree are all seen.
-        axes.plot(angle, line, color=colour, linewidth=1.6 - 0.35 * order, label=" = ".join(name))
+        width = max(1.7 - 0.15 * order, 0.9)
+        axes.plot(angle, line, color=colour, linewidth=width, linestyle=dash, label=label)
+        alone = isolated(line)
+        axes.plot(angle[alone], line[alone], color=colour, linestyle="", marker=".", markersize=4.0)
+
+
+def isolated(line):
+    """Numbers of the points of a line between two gaps (NaN): a line does not show them."""
+    gap = np.isnan(np.concatenate([[np.nan], line, [np.nan]]))
+    return np.flatnonzero(~gap[1:-1] & gap[:-2] & gap[2:])
 
 
 def plane_axes(axes, theta_deg, highest, spacing=0.09):
@@ -104,6 +128,87 @@ def without_cell(slices, number):
     return copy if copy.any() else slices
 
 
-def channel_colour(name, c):
-    """Colour of the line of a group of channels whose first is number ``c``."""
-    return CHANNEL_COLOURS.get(name, OTHER_COLOURS[c % len(OTHER_COLOURS)])
+def unseen_cells(components, cells, direction):
+    """Cells that no path hit and that no integration lights.
+
+    Parameters
+    ----------
+    components : list of goniosim.result.Component
+        Shown as one.
+    cells : goniosim.result.Cells
+    direction : int
+
+    Returns
+    -------
+    ndarray of bool, shape (R, K), or None
+        None if nothing is sampled, or every valid cell was hit.
+    """
+    hits = [component.hits[direction] for component in components if component.hits is not None]
+    if not hits:
+        return None
+    dark = np.all([component.energy[direction].max(axis=0) <= 0.0 for component in components], axis=0)
+    unseen = dark & np.all([number == 0 for number in hits], axis=0) & cells.valid[direction]
+    return unseen if unseen.any() else None
+
+
+def coinciding(curves, tolerance):
+    """Curves that nowhere differ by more than a tolerance from earlier ones.
+
+    Parameters
+    ----------
+    curves : sequence of (ndarray, ndarray)
+        Ascending places and heights of each curve; NaN where it has a gap.
+    tolerance : float
+        In the units of the heights.
+
+    Returns
+    -------
+    list of set of int
+        For each curve the earlier ones that it coincides with.
+    """
+    return [
+        {earlier for earlier in range(number) if _apart(curve, curves[earlier]) <= tolerance}
+        for number, curve in enumerate(curves)
+    ]
+
+
+def _apart(one, other):
+    """Greatest distance of two curves where there are both; infinite where only one has a gap."""
+    if not np.array_equal(*(np.isnan(height).any() for _, height in (one, other))):
+        return np.inf
+    if np.isnan(one[1]).any():
+        same = np.array_equal(np.isnan(one[1]), np.isnan(other[1])) and np.array_equal(one[0], other[0])
+        return float(np.nanmax(np.abs(one[1] - other[1]), initial=0.0)) if same else np.inf
+    distances = [
+        np.abs(np.interp(places, *between, left=np.nan, right=np.nan) - heights)
+        for between, (places, heights) in ((one, other), (other, one))
+        if len(between[0])
+    ]
+    distances = np.concatenate([*distances, np.empty(0)])
+    return float(np.nanmax(distances)) if np.isfinite(distances).any() else np.inf
+
+
+def note_coinciding(axes, channels, angle, f, sigma, top, size=8.0):
+    """Say in a corner of the axes of `curves` which channels cannot be told apart: ``G ≈ B``."""
+    groups = text.channel_groups(channels, [f, sigma])
+    if len(groups) > MOST_NAMED:
+        return
+    # Half a line's width, of the height of the axes in points.
+    points = axes.get_position().height * axes.figure.get_figheight() * letters.POINTS
+    lines = [(angle, tone.remap(f[:, c])) for _, c in groups]
+    same = {}
+    for (name, _), earlier in zip(groups, coinciding(lines, 0.8 / points * tone.remap(top)), strict=True):
+        if earlier:
+            first = groups[min(earlier)][0]
+            same.setdefault(first, [first]).append(name)
+    words = ", ".join(" ≈ ".join(names) for names in same.values())
+    halo = [withStroke(linewidth=2.5, foreground="white")]
+    look = {"fontsize": size, "color": "0.3", "parse_math": False, "path_effects": halo}
+    axes.text(0.015, 0.97, words, transform=axes.transAxes, va="top", **look)
+
+
+def channel_look(name, c, count):
+    """Colour and dash of the line of a group of channels whose first is number ``c`` of ``count``."""
+    if name in CHANNEL_LOOKS:
+        return CHANNEL_LOOKS[name]
+    return colormaps["viridis"](0.9 * c / max(count - 1, 1)), OTHER_DASHES[c % len(OTHER_DASHES)]

@@ -63,6 +63,33 @@ def disk(cells, direction, theta_deg, pixels):
     return cell_numbers(cells, direction, theta_deg, np.stack([-right, -up, height], axis=-1))
 
 
+def magnified(cells, direction, theta_deg, angle_deg, reach_deg, pixels):
+    """Cells round a direction in the plane of incidence, seen from there, as a square of pixels.
+
+    Parameters
+    ----------
+    cells : goniosim.result.Cells
+    direction : int
+    theta_deg : float
+    angle_deg : float
+        Signed angle of the middle from the normal, positive on the side of the mirror direction.
+    reach_deg : float
+        From the middle to each side of the square.
+    pixels : int
+        Along each side.
+
+    Returns
+    -------
+    ndarray of int64, shape (pixels, pixels)
+        As `disk`: the plane of incidence lies level, the light on the left.
+    """
+    offsets = np.tan(np.radians(reach_deg)) * ((np.arange(pixels) + 0.5) * (2.0 / pixels) - 1.0)
+    right, up = np.meshgrid(offsets, -offsets)
+    sine, cosine = np.sin(np.radians(angle_deg)), np.cos(np.radians(angle_deg))
+    seen = np.stack([-sine - cosine * right, -up, cosine - sine * right], axis=-1)
+    return cell_numbers(cells, direction, theta_deg, seen / np.linalg.norm(seen, axis=-1, keepdims=True))
+
+
 def pixel_values(slices, numbers):
     """BSDF of every pixel, shape (pixels, pixels, C); zero where there is no valid cell."""
     by_cell = slices.reshape(len(slices), -1).T

@@ -23,7 +23,7 @@ def cost_lines(result):
     if len(cost.rays) == 0:
         return []
     sampled = list(cost.error)
-    header = ["rays per direction", "seconds", "CPU seconds", *(f"noise {name}" for name in sampled)]
+    header = ["rays per direction", "seconds", "CPU seconds", *(f"noise {name}\n[sr^-1/2]" for name in sampled)]
     rows = [
         [
             text.count(round(cost.rays[p])),

@@ -50,21 +50,23 @@ def overview_figure(result):
     )
     invalid = any(bool((each == view.INVALID).any()) for each in numbers)
     dirac = any(component.contains_delta for component in result.components.values())
-    legend.add(figure, planes, invalid=invalid, dirac=dirac)
+    unseen = any(panels.unseen_cells(_on(result, side), result.cells, i) is not None for side in sides for i in shown)
+    legend.add(figure, planes, invalid=invalid, dirac=dirac, unseen=unseen)
     return figure
 
 
 def _row(figure, board, top, result, side, shown, numbers):
     width, height = figure.get_size_inches()
     figure.text(0.2 / width, 1.0 - top / height, TITLES[side], fontsize=10.5, fontweight="bold")
-    total = _sum([component for name, component in result.components.items() if name.startswith(side)])
+    parts = _on(result, side)
+    total = _sum(parts)
     planes = []
     for column, (i, each) in enumerate(zip(shown, numbers, strict=True)):
         theta_deg = float(result.theta_deg[i])
         left = LEFT + COLUMN * column
         disk = board.disk(left - 0.22, top + 0.3, DISK_WIDTH / disks.ASPECT)
         plane = panels.place(figure, left, top + PLANE_TOP, PLANE_WIDTH, PLANE_HEIGHT)
-        _column(disk, plane, result, total, i, each)
+        _column(disk, plane, result, total, i, each, panels.unseen_cells(parts, result.cells, i))
         disk.above(f"{text.degrees(theta_deg)}°", fontsize=10)
         plane.set_xticks([-60, 0, 60])
         plane.tick_params(labelsize=7.5)
@@ -73,27 +75,32 @@ def _row(figure, board, top, result, side, shown, numbers):
     return planes
 
 
-def _column(disk, plane, result, total, i, numbers):
+def _column(disk, plane, result, total, i, numbers, unseen):
     theta_deg = float(result.theta_deg[i])
     slices, stderr = total.bsdf[i], total.bsdf_stderr[i]
     dirac = panels.dirac_cell(total, i)
     spot = None if dirac is None else view.centre(result.cells, theta_deg, dirac)
     scaling = panels.without_cell(slices, dirac)
     white = tone.white_point(view.pixel_values(scaling, numbers)[numbers >= 0])
-    disk.colour(slices, numbers, theta_deg, white, spot)
+    disk.colour(slices, numbers, theta_deg, white, spot, unseen)
     angle, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, slices, stderr)
-    panels.curves(plane, result.channels, angle, f, sigma, sampled=total.hits is not None)
-    _, f, sigma = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, stderr)
-    panels.plane_axes(plane, theta_deg, inplane.highest(f, sigma, panels.BAND_SIGMAS), spacing=0.15)
+    panels.curves(plane, result.channels, angle, f, sigma, sampled=unseen is not None)
+    _, *clear = inplane.plane_of_incidence(result.cells, i, theta_deg, scaling, stderr)
+    highest = inplane.highest(*clear, panels.BAND_SIGMAS)
+    panels.plane_axes(plane, theta_deg, highest, spacing=0.15)
+    panels.note_coinciding(plane, result.channels, angle, f, sigma, highest or 1.0, size=7.0)
+
+
+def _on(result, side):
+    return [component for name, component in result.components.items() if name.startswith(side)]
 
 
 def _sum(components):
-    """What leaves on one side in all: the values only, sampled if all of it is sampled."""
+    """What leaves on one side in all: the values only."""
     return Component(
         energy=sum(component.energy for component in components),
         stderr=np.sqrt(sum(component.stderr**2 for component in components)),
         bsdf=sum(component.bsdf for component in components),
         bsdf_stderr=np.sqrt(sum(component.bsdf_stderr**2 for component in components)),
-        hits=components[0].hits,
         contains_delta=any(component.contains_delta for component in components),
     )
