@@ -1,5 +1,6 @@
 """What the user describes: typed, checked, and read from YAML with the line of every mistake."""
 
+from goniosim.scene.differences import differences
 from goniosim.scene.effects import Effect, absent_interfaces, distinct_channels, effects
 from goniosim.scene.load import is_study, load_scene, load_scenes, parse_scene, study_name
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
@@ -17,6 +18,7 @@ __all__ = [
     "Simulation",
     "Slice",
     "absent_interfaces",
+    "differences",
     "distinct_channels",
     "effects",
     "is_study",

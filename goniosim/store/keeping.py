@@ -1,0 +1,138 @@
+"""What may replace a result unasked: one of the same scene that has no fewer rays, or anything if it is damaged."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+from numpy.typing import ArrayLike
+
+from goniosim.errors import ConfigError, DamagedFileError, FewerRaysError, ForeignFileError, OutputError
+from goniosim.result import Result
+from goniosim.scene import Scene, differences, parse_scene
+from goniosim.store.decoding import decoding, find, values
+from goniosim.store.layout import describe
+from goniosim.store.output import refuse_to_destroy
+from goniosim.store.reader import open_result, read_header
+from goniosim.store.userblock import REMEDY
+from goniosim.writing import StrPath
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A result that stands where another is to go.
+
+    Attributes
+    ----------
+    rays : ndarray of int64, shape (M,), or None
+        Traced from each direction; None if the file is damaged or of another scene.
+    differences : list of str
+        What its scene differs in from the one asked for, see `goniosim.scene.differences`.
+    damage : str
+        What is wrong with the file, if it is damaged.
+    """
+
+    rays: np.ndarray | None = None
+    differences: tuple[str, ...] = ()
+    damage: str = ""
+
+    def holds(self, rays: ArrayLike) -> bool:
+        """Whether it is of the scene asked for, with at least so many rays from every direction."""
+        return self.rays is not None and bool((self.rays >= np.asarray(rays)).all())
+
+
+def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: str = "") -> Standing | None:
+    """See what stands at the place of an output.
+
+    Cheap, unless the file holds as much as is asked for: then every byte of it is checked, so that nobody relies on
+    a damaged one.
+
+    Parameters
+    ----------
+    path : path-like
+    scene : Scene or None
+        What is asked for; None if ``config_yaml`` cannot be read.
+    rays : int or ndarray of int64, shape (M,)
+        Rays per direction that are asked for.
+    config_yaml : str
+        A text that stands for the scene too.
+
+    Returns
+    -------
+    Standing or None
+        None if nothing stands there.
+
+    Raises
+    ------
+    OutputError
+        If it is not a result, or one that only a newer goniosim can read.
+    """
+    refuse_to_destroy(Path(os.path.realpath(path)), path)
+    try:
+        there = str(read_header(path).get("config_yaml", ""))
+        found = () if there == config_yaml else _differences(there, scene)
+        if found:
+            return Standing(differences=found)
+        traced = _rays(path)
+        if traced.shape != np.broadcast_shapes(traced.shape, np.shape(rays)):
+            raise DamagedFileError(f"{path}: has not the directions of its scene; {REMEDY}")
+        if (traced >= np.asarray(rays)).any():
+            open_result(path)
+    except DamagedFileError as error:
+        return Standing(damage=str(error))
+    except ForeignFileError:
+        return None
+    return Standing(traced)
+
+
+def check_replacement(path: StrPath, result: Result) -> None:
+    """Make sure that a result may replace what stands at a path, which nobody was asked about.
+
+    Parameters
+    ----------
+    path : path-like
+    result : goniosim.result.Result
+
+    Raises
+    ------
+    FewerRaysError
+        A sound result of the same scene with more rays from some direction.
+    OutputError
+        A result of another scene, or no result.
+    """
+    found = look_at(path, _scene(result.config_yaml), result.rays, result.config_yaml)
+    if found is None or found.damage:
+        return
+    if found.rays is None:
+        raise OutputError(
+            f"{path}: holds the result of another scene ({'; '.join(found.differences)}), so it is not overwritten; "
+            "choose another name, or overwrite=True"
+        )
+    if (found.rays > result.rays).any():
+        raise FewerRaysError(path, _most(found.rays), _most(result.rays))
+
+
+def _differences(there: str, asked: Scene | None) -> tuple[str, ...]:
+    scene = _scene(there)
+    if scene is None or asked is None:
+        return ("the scene is not one that this goniosim can read",)
+    return tuple(differences(scene, asked))
+
+
+def _scene(config_yaml: str) -> Scene | None:
+    try:
+        return parse_scene(config_yaml)
+    except ConfigError:
+        return None
+
+
+def _rays(path: StrPath) -> np.ndarray:
+    """Rays traced from each direction, shape (M,), without reading the whole file."""
+    name = "incident/rays"
+    with decoding(path, REMEDY), h5py.File(path, "r", locking=False) as file:
+        return np.asarray(values(find(file, name), describe(name)))
+
+
+def _most(rays: np.ndarray) -> str:
+    return f"{rays.max():.4g}".replace("e+0", "e").replace("e+", "e")
