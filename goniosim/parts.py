@@ -65,17 +65,27 @@ class Part:
             os.close(self.descriptor)
         raise OSError(f"{home}: every new file in it disappears")
 
-    def let_go(self) -> None:
-        """Close the file and give up the claim on it, as it is moved into place; harmless when repeated."""
-        if self.descriptor >= 0:
-            if self._folder:
-                with contextlib.suppress(OSError):
-                    os.unlink(self.path / _LOCK)
-            os.close(self.descriptor)
-            self.descriptor = -1
+    def move(self, target: Path) -> None:
+        """Put it in place: of an earlier file, or where there is no folder or an empty one.
+
+        Parameters
+        ----------
+        target : Path
+
+        Raises
+        ------
+        OSError
+            It is then still a part.
+        """
+        os.replace(self.path, target)
+        if self._folder:
+            with contextlib.suppress(OSError):
+                os.unlink(target / _LOCK)
+        os.close(self.descriptor)
+        self.descriptor = -1
 
     def remove(self) -> None:
-        """Remove what is still there; harmless when repeated."""
+        """Remove it, unless it was moved; harmless when repeated."""
         if self.descriptor >= 0:
             _remove(self.path, self._folder)
             os.close(self.descriptor)
@@ -103,11 +113,6 @@ def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
                 match = _PART.fullmatch(entry.name)
                 if match and match[1] in names:
                     _remove_if_dead(Path(entry.path), entry.is_dir(follow_symlinks=False), *match.groups()[1:])
-
-
-def is_part(path: Path) -> bool:
-    """Whether a name is that of a part."""
-    return _PART.fullmatch(path.name) is not None
 
 
 @contextlib.contextmanager

@@ -79,8 +79,7 @@ class Replacement:
     def commit(self) -> None:
         """Put the finished file in place: readers see the old file or the new one, never a mixture."""
         with explained(self._path):
-            os.replace(self.temporary, self._target)
-        self._part.let_go()
+            self._part.move(self._target)
 
     def discard(self) -> None:
         """Remove what was written, unless it was committed."""

@@ -82,6 +82,30 @@ def degrees(angle):
     return f"{angle:.10g}"
 
 
+def angles(theta_deg):
+    """Format angles in degrees so that no two of them look alike: ``30`` and ``30.0000000000001``.
+
+    Parameters
+    ----------
+    theta_deg : ndarray, shape (M,)
+        Distinct.
+
+    Returns
+    -------
+    list of str
+        As from `degrees`, with more digits only where it takes them.
+    """
+    values = [float(angle) for angle in theta_deg]
+    shown = [degrees(angle) for angle in values]
+    for digits in range(11, 18):
+        crowded = [place for place, word in enumerate(shown) if shown.count(word) > 1]
+        for place in crowded:
+            value = values[place]
+            # The shortest text that reads back as the number tells any two apart.
+            shown[place] = f"{value:.{digits}g}" if digits < 17 else repr(value).removesuffix(".0")
+    return shown
+
+
 def table(header, rows, indent="  ", gap="   "):
     """Lay out rows of strings in columns.
 

@@ -6,6 +6,7 @@ from goniosim.store.output import Reservation, reserve_output
 from goniosim.store.reader import open_result, read_header
 from goniosim.store.saving import write_result
 from goniosim.store.size import predicted_size
+from goniosim.store.userblock import is_result
 
 __all__ = [
     "ModelsFile",
@@ -13,6 +14,7 @@ __all__ = [
     "Reservation",
     "Standing",
     "is_models_file",
+    "is_result",
     "look_at",
     "may_be_models_file",
     "open_models",

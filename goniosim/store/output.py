@@ -87,8 +87,7 @@ class Reservation:
             refuse_to_destroy(self._target, self._shown)
             check()
             with explained(self._shown):
-                os.replace(self._part.path, self._target)
-        self._part.let_go()
+                self._part.move(self._target)
         # The name itself survives a power cut only after this. Some network file systems refuse it.
         with contextlib.suppress(OSError):
             folder = os.open(self._target.parent, os.O_RDONLY)

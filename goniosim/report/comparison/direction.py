@@ -2,7 +2,6 @@
 
 from matplotlib.figure import Figure
 
-from .. import text
 from ..drawing import panels, tone
 from ..drawing.bands import bar
 from ..drawing.disks import ASPECT, Board
@@ -44,7 +43,7 @@ def direction_figure(name, component, direction):
     width = right + columns * STEP + BAR_ROOM
     height = TOP + max(rows * CELL, lobes_height + LIST_GAP + legend.list_height(entries)) + FOOTER
     figure = Figure(figsize=(width, height), dpi=style.DISKS_DPI)
-    title(figure, f"{name},  {component},  light at {text.degrees(direction.theta_deg)}°")
+    title(figure, f"{name},  {component},  light at {direction.angle}°")
     half_disk.draw(panels.place(figure, LEFT, TOP, lobes, lobes_height), direction, size=1.25)
     legend.place_list(figure, LEFT, TOP + lobes_height + LIST_GAP, lobes, entries)
     board, scale = Board(figure), Scale(direction, PIXELS)

@@ -2,7 +2,6 @@
 
 from matplotlib.figure import Figure
 
-from .. import text
 from ..drawing.disks import ASPECT, Board
 from ..drawing.legend import caption, title
 from . import labels, style
@@ -43,7 +42,7 @@ def views_figure(name, component, directions):
                 labels.above(disk, entry)
             labels.below(disk, entry)
         y = 1.0 - (top + 0.5 * DISK) / height
-        figure.text(0.12 / width, y, f"{text.degrees(direction.theta_deg)}°", fontsize=10, va="center")
+        figure.text(0.12 / width, y, f"{direction.angle}°", fontsize=10, va="center")
     by = ", set by the simulation" if entries[0].model is None else ""
     grey = max((scale.explanation for scale in scales), key=len)
     caption(figure, f"colour by log(1 + √f), a scale for each row{by}{grey}{labels.explanation(directions)}")
