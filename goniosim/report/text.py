@@ -1,6 +1,7 @@
 """Numbers and tables as plain text."""
 
 import math
+from collections import Counter
 
 import numpy as np
 
@@ -98,11 +99,11 @@ def angles(theta_deg):
     values = [float(angle) for angle in theta_deg]
     shown = [degrees(angle) for angle in values]
     for digits in range(11, 18):
-        crowded = [place for place, word in enumerate(shown) if shown.count(word) > 1]
-        for place in crowded:
-            value = values[place]
-            # The shortest text that reads back as the number tells any two apart.
-            shown[place] = f"{value:.{digits}g}" if digits < 17 else repr(value).removesuffix(".0")
+        uses = Counter(shown)
+        for place, value in enumerate(values):
+            if uses[shown[place]] > 1:
+                # The shortest text that reads back as the number tells any two apart.
+                shown[place] = f"{value:.{digits}g}" if digits < 17 else repr(value).removesuffix(".0")
     return shown
 
 
