@@ -92,7 +92,7 @@ def sort_out(planned, overwrite, note):
     OutputError
         Something stands in the way: all files at once, with what each of them differs in.
     """
-    from goniosim.store import reserve_output
+    from goniosim.store import refuse_newer, reserve_output
 
     remove_dead(Path(os.path.realpath(job.path)) for job in planned)
     found = {} if overwrite else _look_at(planned)
@@ -102,6 +102,7 @@ def sort_out(planned, overwrite, note):
     kept = {job.path: found[job.path] for job in planned if job.is_finished(found.get(job.path))}
     todo = [job for job in planned if job.path not in kept]
     for job in todo:
+        refuse_newer(job.path)
         # Room is kept only for the material at work: a killed study leaves a single hidden file behind.
         reserve_output(job.path, 0).release()
     if kept:

@@ -1,21 +1,26 @@
 """What may replace a result unasked: one of the same scene that has no fewer rays, or anything if it is damaged."""
 
-import os
 from dataclasses import dataclass
-from pathlib import Path
 
 import h5py
 import numpy as np
 from numpy.typing import ArrayLike
 
-from goniosim.errors import ConfigError, DamagedFileError, FewerRaysError, ForeignFileError, OutputError
+from goniosim.errors import (
+    ConfigError,
+    DamagedFileError,
+    FewerRaysError,
+    ForeignFileError,
+    GoniosimError,
+    NewerSchemaError,
+    OutputError,
+    UnusableResultError,
+)
 from goniosim.result import Result
 from goniosim.scene import Scene, differences, parse_scene
-from goniosim.store.decoding import decoding, find, values
-from goniosim.store.layout import describe
-from goniosim.store.output import refuse_to_destroy
+from goniosim.scene.model import MAX_DIRECTIONS
+from goniosim.store.output import reserve_output
 from goniosim.store.reader import open_result, read_header
-from goniosim.store.userblock import REMEDY
 from goniosim.writing import StrPath
 
 
@@ -68,22 +73,34 @@ def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: st
     OutputError
         If it is not a result, or one that only a newer goniosim can read.
     """
-    refuse_to_destroy(Path(os.path.realpath(path)), path)
     try:
         there = str(read_header(path).get("config_yaml", ""))
         found = () if there == config_yaml else _differences(there, scene)
         if found:
             return Standing(differences=found)
         traced = _rays(path)
-        if traced.shape != np.broadcast_shapes(traced.shape, np.shape(rays)):
-            raise DamagedFileError(f"{path}: has not the directions of its scene; {REMEDY}")
         if (traced >= np.asarray(rays)).any():
             open_result(path)
     except DamagedFileError as error:
         return Standing(damage=str(error))
-    except ForeignFileError:
+    except NewerSchemaError as error:
+        raise _newer(error) from error
+    except (ForeignFileError, UnusableResultError):
+        # Nothing, or something that is none of ours: this tells.
+        reserve_output(path, 0).release()
         return None
     return Standing(traced)
+
+
+def refuse_newer(path: StrPath) -> None:
+    """Raise an OutputError if the result at a path is one that only a newer goniosim can read."""
+    try:
+        read_header(path)
+    except NewerSchemaError as error:
+        raise _newer(error) from error
+    except GoniosimError:
+        # Nothing there, or nothing to lose.
+        pass
 
 
 def check_replacement(path: StrPath, result: Result) -> None:
@@ -129,9 +146,19 @@ def _scene(config_yaml: str) -> Scene | None:
 
 def _rays(path: StrPath) -> np.ndarray:
     """Rays traced from each direction, shape (M,), without reading the whole file."""
-    name = "incident/rays"
-    with decoding(path, REMEDY), h5py.File(path, "r", locking=False) as file:
-        return np.asarray(values(find(file, name), describe(name)))
+    try:
+        with h5py.File(path, "r", locking=False) as file:
+            rays, angles = file["incident/rays"], file["incident/theta_deg"]
+            # Read only what cannot be huge.
+            if rays.shape == angles.shape and len(rays.shape) == 1 and rays.shape[0] <= MAX_DIRECTIONS:
+                return np.asarray(rays[()]).astype(np.int64, casting="safe")
+    except (OSError, RuntimeError, LookupError, TypeError, ValueError, AttributeError):
+        pass
+    raise DamagedFileError(f"{path}: does not say how many rays were traced; simulate again")
+
+
+def _newer(error: NewerSchemaError) -> OutputError:
+    return OutputError(f"{error}; the file is not overwritten")
 
 
 def _most(rays: np.ndarray) -> str:

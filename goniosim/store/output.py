@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Self
 
-from goniosim.errors import GoniosimError, NewerSchemaError, OutputError
+from goniosim.errors import OutputError
 from goniosim.parts import Part, remove_dead, turn
 from goniosim.store import userblock
 from goniosim.writing import NO_ROOM, StrPath, explained, remedy
@@ -84,7 +84,7 @@ class Reservation:
         with explained(self._shown):
             _write(self._part.descriptor, parts)
         with turn(self._target.parent):
-            refuse_to_destroy(self._target, self._shown)
+            _refuse_to_destroy(self._target, self._shown)
             check()
             with explained(self._shown):
                 self._part.move(self._target)
@@ -125,7 +125,7 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     """
     # A link stays a link: the file it names is the one to replace.
     target = Path(os.path.realpath(path))
-    refuse_to_destroy(target, path)
+    _refuse_to_destroy(target, path)
     if not target.parent.is_dir():
         what = "is not a folder" if target.parent.exists() else "does not exist"
         raise OutputError(f"{path}: the folder {target.parent} {what}; create it, or choose another place")
@@ -180,24 +180,13 @@ def rescue(parts: Sequence[bytes], path: StrPath) -> str:
     return f"the result was saved as {name} instead"
 
 
-def refuse_to_destroy(target: Path, shown: StrPath) -> None:
-    """Raise an OutputError if something stands at ``target``, ``shown`` to the user, that is no result we can read."""
+def _refuse_to_destroy(target: Path, shown: StrPath) -> None:
     if target.is_dir():
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
-    if not target.exists():
-        return
-    if not userblock.is_result(target):
+    if target.exists() and not userblock.is_result(target):
         raise OutputError(
             f"{shown}: exists and is not a goniosim result, so it is not overwritten; choose another name or remove it"
         )
-    try:
-        with userblock.open_regular(target) as stream:
-            userblock.read(stream, shown)
-    except NewerSchemaError as error:
-        raise OutputError(f"{error}; it is not overwritten: choose another name") from error
-    except GoniosimError:
-        # Damaged, or gone by now: nothing to lose.
-        pass
 
 
 def _write(descriptor: int, parts: Sequence[bytes]) -> None:

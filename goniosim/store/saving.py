@@ -2,7 +2,7 @@
 
 from goniosim.errors import FewerRaysError, OutputError
 from goniosim.result import Result
-from goniosim.store.keeping import check_replacement
+from goniosim.store.keeping import check_replacement, refuse_newer
 from goniosim.store.output import Reservation, rescue, reserve_output
 from goniosim.store.writer import encode
 from goniosim.writing import StrPath
@@ -37,11 +37,15 @@ def write_result(
         of the program.
     """
     parts = encode(result)
+
+    def check() -> None:
+        refuse_newer(path) if overwrite else check_replacement(path, result)
+
     try:
         if reservation is None:
             reservation = reserve_output(path, sum(map(len, parts)))
         with reservation:
-            reservation.commit(parts, lambda: None if overwrite else check_replacement(path, result))
+            reservation.commit(parts, check)
     except FewerRaysError:
         raise
     except OutputError as error:

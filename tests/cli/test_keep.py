@@ -5,6 +5,7 @@ import signal
 
 import pytest
 
+from goniosim.errors import NewerSchemaError, OutputError
 from goniosim.store import open_result, write_result
 from synthetic import write_models
 
@@ -152,6 +153,23 @@ def test_models_and_newer_files_are_foreign(goniosim, folder, untraced):
     for options in ((), ("--overwrite",)):
         code, _, err = goniosim("simulate", "scene.yaml", *options)
         assert code == 4 and "not a goniosim result" in only_line(err)
+
+
+def test_a_file_of_a_newer_goniosim_is_not_overwritten(goniosim, folder, small, untraced, monkeypatch):
+    def newer(path):
+        raise NewerSchemaError(f"{path}: follows schema 9.0; update goniosim")
+
+    monkeypatch.setattr("goniosim.store.keeping.read_header", newer)
+    monkeypatch.setattr("tempfile.tempdir", str(folder))
+    before = small.read_bytes()
+    for options in ((), ("--overwrite",)):
+        code, _, err = goniosim("simulate", "scene.yaml", "--rays", "1e6", *options)
+        said = "small.h5: follows schema 9.0; update goniosim; the file is not overwritten"
+        assert (code, only_line(err)) == (4, f"goniosim: error: {said}")
+    for overwrite in (False, True):
+        with pytest.raises(OutputError, match="the file is not overwritten; the result was saved as"):
+            write_result(open_result(small), small, overwrite=overwrite)
+    assert small.read_bytes() == before
 
 
 def test_the_identity_of_an_old_file_is_that_of_its_scene(goniosim, folder, small, untraced):

@@ -7,9 +7,9 @@ import os
 import re
 from pathlib import Path
 
-from ...errors import OutputError
+from ...errors import ForeignFileError, GoniosimError, OutputError, UnusableResultError
 from ...parts import Part, remove_dead, turn
-from ...store import is_result
+from ...store import read_header
 from ...writing import explained, make_folder
 from ..drawing.files import is_figure
 from . import files
@@ -121,11 +121,22 @@ class ReportFolder:
         with explained(self._shown):
             for path in sorted(self._folder.iterdir()):
                 emptied = path.name == FIGURES and path.is_dir() and not any(path.iterdir())
-                if not (path.name.startswith(".") or is_result(path) or emptied):
+                if not (path.name.startswith(".") or _is_result(path) or emptied):
                     raise OutputError(
                         f"{self._shown}: holds {path.name}, and no earlier report, so nothing in it is overwritten; "
                         f"{_OTHER_PLACE}"
                     )
+
+
+def _is_result(path):
+    try:
+        read_header(path)
+    except (ForeignFileError, UnusableResultError):
+        return False
+    except GoniosimError:
+        # Damaged or newer: a result all the same.
+        pass
+    return True
 
 
 def listed_files(folder):
