@@ -1,6 +1,7 @@
 """The folder of a report: over an earlier report, and over nothing else; as a whole, or not at all."""
 
 import json
+import os
 
 import pytest
 from matplotlib.figure import Figure
@@ -19,7 +20,7 @@ def build(folder, figures=("gold-lobes.png",), text="new"):
     (place.building / "figures").mkdir()
     names = ["errors.csv", "models.h5", *(f"figures/{name}" for name in figures)]
     for name in names:
-        (place.building / name).write_text(text)
+        (place.building / name).write_bytes(text.encode("latin-1"))
     manifest = {"filetype": FILETYPE, "results": [{"material": "gold"}], "files": [*place.names(), "errors.json"]}
     (place.building / "errors.json").write_text(json.dumps(manifest))
     return place
@@ -163,3 +164,55 @@ def test_a_list_cannot_name_files_elsewhere(tmp_path):
     (folder / "errors.json").write_text(json.dumps({**manifest, "files": manifest["files"][:-1]}))
     build(folder).commit()
     assert (tmp_path / "precious.png").read_text() == "mine"
+
+
+@pytest.mark.parametrize("earlier", [True, False])
+def test_a_run_that_is_killed_while_it_puts_its_report_in_place(tmp_path, monkeypatch, earlier):
+    """At each move and each removal: every file is whole, and the next run finds nothing in its way."""
+    mark = "\x89PNG tEXtSoftware\0goniosim"
+    for deadly in range(20):
+        folder = tmp_path / str(deadly)
+        folder.mkdir()
+        if earlier:
+            build(folder, ("gold-lobes.png", "gold-views.png"), "old").commit()
+            (folder / "notes.txt").write_text("mine")
+        before = content(folder)
+        place = build(folder, ("gold-lobes.png", "zinc-lobes.png"), mark)
+        after = {path: (place.building / path).read_bytes() for path in place.names()}
+        killed = commit_until(place, deadly, monkeypatch)
+        for name, text in content(folder).items():
+            assert text in (before.get(name), after.get(name))
+        # The system closes what a dead process had open.
+        if killed:
+            os.close(place._part.descriptor)
+        build(folder, ("gold-lobes.png",)).commit()
+        mine = {"notes.txt"} if earlier else set()
+        stray = {"figures/zinc-lobes.png"} if killed and earlier else set()
+        assert mine <= content(folder).keys() <= listed_files(folder) | mine | stray
+        assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+        if not killed:
+            break
+    assert 3 < deadly < 19
+
+
+def commit_until(place, deadly, monkeypatch):
+    """Commit, but die at a certain call that changes the folder; whether that came."""
+    calls = []
+
+    def dying(call):
+        def made(*arguments, **options):
+            calls.append(call)
+            if len(calls) > deadly:
+                raise KeyboardInterrupt
+            return call(*arguments, **options)
+
+        return made
+
+    with monkeypatch.context() as patch:
+        for name in ("replace", "unlink"):
+            patch.setattr(os, name, dying(getattr(os, name)))
+        try:
+            place.commit()
+        except KeyboardInterrupt:
+            return True
+    return False
