@@ -60,10 +60,16 @@ class Part:
                 self.path.mkdir()
             self.descriptor = os.open(_lock_of(self.path, folder), _FLAGS | os.O_CREAT | os.O_EXCL, 0o666)
             # Between the two calls another run may have taken it for an orphan.
-            if _lock(self.descriptor) is not False and os.fstat(self.descriptor).st_nlink:
+            if _lock(self.descriptor) is not False and self._is_there():
                 return
             os.close(self.descriptor)
         raise OSError(f"{home}: every new file in it disappears")
+
+    def _is_there(self) -> bool:
+        try:
+            return os.path.samestat(os.fstat(self.descriptor), os.stat(_lock_of(self.path, self._folder)))
+        except FileNotFoundError:
+            return False
 
     def move(self, target: Path) -> None:
         """Put it in place: of an earlier file, or where there is no folder or an empty one.

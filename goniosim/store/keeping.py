@@ -19,8 +19,9 @@ from goniosim.errors import (
 from goniosim.result import Result
 from goniosim.scene import Scene, differences, parse_scene
 from goniosim.scene.model import MAX_DIRECTIONS
+from goniosim.store import userblock
 from goniosim.store.output import reserve_output
-from goniosim.store.reader import open_result, read_header
+from goniosim.store.reader import read_header
 from goniosim.writing import StrPath
 
 
@@ -80,7 +81,7 @@ def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: st
             return Standing(differences=found)
         traced = _rays(path)
         if (traced >= np.asarray(rays)).any():
-            open_result(path)
+            _verify(path)
     except DamagedFileError as error:
         return Standing(damage=str(error))
     except NewerSchemaError as error:
@@ -142,6 +143,12 @@ def _scene(config_yaml: str) -> Scene | None:
         return parse_scene(config_yaml)
     except ConfigError:
         return None
+
+
+def _verify(path: StrPath) -> None:
+    """Check every byte of a result file without decoding it."""
+    with userblock.open_regular(path) as stream:
+        userblock.verify(stream, userblock.read(stream, path), path)
 
 
 def _rays(path: StrPath) -> np.ndarray:
