@@ -2,6 +2,7 @@
 
 import re
 
+LONGEST = 200
 _UNSAFE = re.compile(r"[^A-Za-z0-9._+=,-]+")
 
 
@@ -20,7 +21,7 @@ def distinct(names):
     """
     found, taken = [], set()
     for name in names:
-        part = plain = _UNSAFE.sub("-", name).rstrip("-")
+        part = plain = _UNSAFE.sub("-", name).rstrip("-").lstrip(".")[:LONGEST] or "-"
         number = 1
         while part.casefold() in taken:
             number += 1
