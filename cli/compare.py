@@ -64,8 +64,8 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
 
     for path in passed_over:
         say(f"{path}: holds integrated models, not a result; stepped over")
-    made = compare_report.Report(folder, materials, request, subcells, figures)
-    with tidied_up(), contextlib.closing(made) as report:
+    options = materials, request, subcells, figures
+    with tidied_up(), contextlib.closing(compare_report.Report(folder, *options)) as report:
         for number, path in enumerate(paths, 1):
             report.add(path, lambda message, n=number: say(f"{n}/{len(paths)} {message}"))
         text = report.finish()

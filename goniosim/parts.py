@@ -19,7 +19,7 @@ from pathlib import Path
 _LOCK = ".lock"
 _LONGEST = 40
 _PART = re.compile(r"\.(.*)\.([0-9a-f]{8})-([0-9a-f]{8})-(\d+)-[0-9a-f]{8}\.part", re.DOTALL)
-_TRIES = 100
+_TRIES = 20
 
 
 class Part:
@@ -171,7 +171,11 @@ def _remove_if_dead(path: Path, folder: bool, host: str, boot: str, pid: str) ->
 
 def _remove(path: Path, folder: bool) -> None:
     if folder:
-        shutil.rmtree(path, ignore_errors=True)
+        # A process that helps may put a last file into it meanwhile.
+        for _ in range(_TRIES):
+            shutil.rmtree(path, ignore_errors=True)
+            if not path.exists():
+                break
     else:
         with contextlib.suppress(OSError):
             os.unlink(path)

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from goniosim.errors import OutputError
+from goniosim.report.comparison import report
 from goniosim.report.comparison.files import FILETYPE
 from goniosim.report.comparison.folder import ReportFolder, listed_files
 from goniosim.report.drawing.files import write_figure
@@ -58,6 +59,33 @@ def test_a_report_that_is_given_up_leaves_all_as_it_was(tmp_path):
     before = content(tmp_path / "report")
     build(tmp_path / "report").discard()
     assert content(tmp_path / "report") == before
+
+
+def test_a_report_that_cannot_begin_leaves_nothing(tmp_path, monkeypatch):
+    def full(*_):
+        raise OutputError("the disk is full")
+
+    monkeypatch.setattr(report, "ModelsWriter", full)
+    with pytest.raises(OutputError, match="full"):
+        report.Report(tmp_path / "report", ["gold"], {}, 1)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_last_figure_that_comes_while_a_report_is_given_up(tmp_path, monkeypatch):
+    """The processes that draw are not waited for."""
+    place = build(tmp_path / "report")
+    rmdir = os.rmdir
+
+    def late(path, **options):
+        if not late.drawn:
+            late.drawn = True
+            (place.building / "figures" / "late.png").write_text("new")
+        rmdir(path, **options)
+
+    late.drawn = False
+    monkeypatch.setattr(os, "rmdir", late)
+    place.discard()
+    assert late.drawn and list(tmp_path.iterdir()) == []
 
 
 def test_a_rerun_replaces_what_the_earlier_report_lists_and_nothing_else(tmp_path):

@@ -80,16 +80,20 @@ class Report:
     """
 
     def __init__(self, folder, materials, request, subcells, figures="all"):
+        self._origin = files.origin_of(subcells)
         self._stems = dict(zip(materials, distinct(materials), strict=True))
         self._place = ReportFolder(folder, list(self._stems.values()))
         self._folder = self._place.building
+        try:
+            (self._folder / FIGURES).mkdir()
+            self._models = ModelsWriter(self._folder / MODELS, self._origin)
+        except BaseException:
+            self._place.discard()
+            raise
         self._request = request
         self._subcells = subcells
         self._figures = figures
         self._summaries = []
-        self._origin = files.origin_of(subcells)
-        (self._folder / FIGURES).mkdir()
-        self._models = ModelsWriter(self._folder / MODELS, self._origin)
         self._pool = Pool()
         self._studio = Studio(available_cores())
 
