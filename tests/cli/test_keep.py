@@ -173,7 +173,7 @@ def test_a_file_of_a_newer_goniosim_is_not_overwritten(goniosim, folder, small, 
 
 
 def test_the_identity_of_an_old_file_is_that_of_its_scene(goniosim, folder, small, untraced):
-    """Before schema 1.1 the hash in the file covered the rays as well; the text of the scene tells."""
+    """In files of schema 1.0 the hash covered the rays as well; the text of the scene tells."""
     result = open_result(small)
     result.config_hash = "0" * 64
     write_result(result, small)

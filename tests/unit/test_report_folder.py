@@ -163,7 +163,7 @@ def test_two_at_once_one_after_the_other(tmp_path):
     assert "figures/gold-lobes.png" not in found
 
 
-def test_a_report_of_0_1_is_known_by_its_tables(tmp_path):
+def test_a_report_without_a_list_is_known_by_its_tables(tmp_path):
     folder = tmp_path / "report"
     build(folder, ("gold-lobes.png", "gold-lobes-theta_60.svg", "cost.png"), "old").commit()
     manifest = json.loads((folder / "errors.json").read_text())

@@ -155,7 +155,7 @@ def listed_files(folder):
         report = json.loads((folder / files.JSON).read_bytes())
         if report["filetype"] != files.FILETYPE:
             return set()
-        # Versions before 0.2 had no list.
+        # The first reports had no list.
         found = report.get("files") or _possible(folder, [source["material"] for source in report["results"]])
         # Whatever the list says, it names nothing elsewhere.
         return {files.JSON, *(name for name in found if name in TABLES or _FIGURE.fullmatch(name))}
