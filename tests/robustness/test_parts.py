@@ -153,7 +153,10 @@ def test_two_writers_of_different_scenes_one_wins_whole(tmp_path, monkeypatch):
     config = make_result().config_yaml
     write_result(make_result(name="first"), path, reservation=first)
     with pytest.raises(Exception, match=r"another scene \(layers\[0\].*the result was saved as"):
-        other = make_result(name="second", config_yaml=config.replace("alpha: 0.2", "alpha: 0.3"))
+        other = make_result(
+            name="second",
+            config_yaml=config.replace("alpha: 0.2", "alpha: 0.3").replace("name: synthetic", "name: second"),
+        )
         write_result(other, path, reservation=second)
     assert open_result(path).name == "first"
     assert open_result(next((tmp_path / "rescued").iterdir())).name == "second"
