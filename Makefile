@@ -40,7 +40,7 @@ test-all: $(STAMP)
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py
 
-# Files that are finished with just these rays are left alone; with another RAYS all are simulated anew.
+# Files that hold these rays or more are left alone; with more RAYS all are simulated anew. For fewer, remove the folder.
 paper: $(STAMP)
 	$(BIN)/goniosim simulate configs/paper/plastics.yaml --rays $(RAYS) -o $(PAPER)
 	$(BIN)/goniosim simulate configs/paper/metals.yaml --rays $(RAYS) -o $(PAPER)

@@ -7,7 +7,7 @@ import click
 
 from .options import PATH
 from .policy import debug_option
-from .signals import tidied_up
+from .signals import tidied_up, undisturbed
 
 
 def _complete_models(ctx, param, incomplete):
@@ -73,7 +73,7 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
 
     request = check_request(_names(models), _options(settings))
     paths, passed_over = result_files(results)
-    compare_report.check_headers(paths, allow_partial)
+    materials = compare_report.check_headers(paths, allow_partial)
     folder = Path(output or f"{Path(results).resolve().stem}-comparison")
 
     def say(message):
@@ -82,11 +82,13 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
 
     for path in passed_over:
         say(f"{path}: holds integrated models, not a result; stepped over")
-    made = compare_report.Report(folder, request, subcells, figures)
-    with tidied_up(), contextlib.closing(made) as report:
+    options = materials, request, subcells, figures
+    with tidied_up(), contextlib.closing(compare_report.Report(folder, *options)) as report:
         for number, path in enumerate(paths, 1):
             report.add(path, lambda message, n=number: say(f"{n}/{len(paths)} {message}"))
         text = report.finish()
+        with undisturbed():
+            report.commit()
     if not quiet:
         click.echo(text)
         click.echo(f"\n{folder}")

@@ -1,14 +1,17 @@
 """The materials of one command, one after the other: reserve, compile, simulate, write."""
 
+import os
 import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-from goniosim.errors import DamagedFileError, ForeignFileError, StoppedError
+from goniosim.errors import FewerRaysError, OutputError, StoppedError
+from goniosim.parts import remove_dead
 from goniosim.writing import make_folder
 
 # Kernels from the cache load faster than this; a longer wait deserves a word.
 PATIENCE = 1.0
+_REMEDY = "nothing is overwritten: choose another place with -o, or replace results with --overwrite"
 
 
 @dataclass(frozen=True)
@@ -28,15 +31,9 @@ class Job:
         """Rays of all incident directions together."""
         return len(self.scene.incident.theta_deg) * self.scene.simulation.rays
 
-    def is_finished(self):
-        """Whether the file already holds the complete result of just this scene."""
-        from goniosim.store import read_header
-
-        try:
-            header = read_header(self.path)
-        except (ForeignFileError, DamagedFileError):
-            return False
-        return header["status"] == "complete" and header["config_hash"] == self.scene.config_hash()
+    def is_finished(self, standing):
+        """Whether a `goniosim.store.Standing`, if there is one, holds all rays that are asked for."""
+        return standing is not None and standing.holds(self.scene.simulation.rays)
 
     def reserve(self):
         """Make sure that the file can be written, and keep room for it."""
@@ -47,7 +44,7 @@ class Job:
 
 
 def plan(scenes, output, folder):
-    """Pair the scenes with their files, and make sure now that nothing stands in the way of these.
+    """Pair the scenes with their files.
 
     Parameters
     ----------
@@ -64,22 +61,92 @@ def plan(scenes, output, folder):
     Raises
     ------
     OutputError
+        If there is no folder for the files.
     """
-    from goniosim.store import reserve_output
-
     if folder is None:
         (scene,) = scenes
         planned = [Job(scene, Path(output or f"{scene.material.name}.h5"))]
     else:
         planned = [Job(scene, folder / f"{scene.material.name}.h5") for scene in scenes]
     make_folder(planned[0].path.parent)
-    for job in planned:
-        # Room is kept only for the material at work: a killed study leaves a single hidden file behind.
-        reserve_output(job.path, 0).release()
     return planned
 
 
-def run(jobs, progress, signals, verbose):
+def sort_out(planned, overwrite, note):
+    """Leave out the jobs whose files hold what is asked for; make sure that the files of the others can be written.
+
+    Parameters
+    ----------
+    planned : list of Job
+    overwrite : bool
+        Whether to replace results, whatever they hold.
+    note : callable
+        Called with a line on each file that is damaged, and one on those that stay.
+
+    Returns
+    -------
+    list of Job
+
+    Raises
+    ------
+    OutputError
+        Something stands in the way: all files at once, with what each of them differs in.
+    """
+    from goniosim.store import refuse_newer, reserve_output
+
+    remove_dead(Path(os.path.realpath(job.path)) for job in planned)
+    found = {} if overwrite else _look_at(planned)
+    for standing in found.values():
+        if standing.damage:
+            note(f"to be replaced: {standing.damage}")
+    kept = {job.path: found[job.path] for job in planned if job.is_finished(found.get(job.path))}
+    todo = [job for job in planned if job.path not in kept]
+    for job in todo:
+        refuse_newer(job.path)
+        # Room is kept only for the material at work: a killed study leaves a single hidden file behind.
+        reserve_output(job.path, 0).release()
+    if kept:
+        note(_kept(kept, len(planned)))
+    return todo
+
+
+def _look_at(planned):
+    """What stands in the places of the files, as a dict by path."""
+    from goniosim.store import look_at
+
+    found, foreign = {}, []
+    for job in planned:
+        try:
+            standing = look_at(job.path, job.scene, job.scene.simulation.rays)
+        except OutputError as error:
+            foreign.append(error)
+        else:
+            if standing is not None:
+                found[job.path] = standing
+    others = {path: standing.differences for path, standing in found.items() if standing.differences}
+    if len(foreign) == 1 and not others:
+        raise foreign[0]
+    details = [*map(str, foreign), *(f"{path}: {line}" for path, lines in others.items() for line in lines)]
+    if len(others) == 1 and not foreign:
+        (path,) = others
+        raise OutputError(f"{path}: holds the result of another scene; {_REMEDY}", details)
+    if details:
+        raise OutputError(f"{len(others) + len(foreign)} files hold something else; {_REMEDY}", details)
+    return found
+
+
+def _kept(kept, planned):
+    import numpy as np
+
+    from goniosim.report.text import counts
+
+    held = counts(np.concatenate([standing.rays for standing in kept.values()]))
+    if planned == 1:
+        return f"{next(iter(kept))} stays as it is: it holds {held} rays per direction of this scene"
+    return f"{len(kept)} of {planned} materials are finished: skipped (their files hold {held} rays per direction)"
+
+
+def run(jobs, progress, signals, verbose, overwrite=False):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
     from goniosim.report.simulation.forecast import effects_text
     from goniosim.report.simulation.losses import event_cap
@@ -102,7 +169,11 @@ def run(jobs, progress, signals, verbose):
             except StoppedError:
                 progress.note(f"stopped by {signals.name} before the first rays")
                 return
-            write_result(result, job.path, reservation=signals.reservation)
+            try:
+                write_result(result, job.path, overwrite=overwrite, reservation=signals.reservation)
+            except FewerRaysError as error:
+                progress.note(f"stopped by {signals.name}: {error.fact}" if signals.signum else error.fact)
+                continue
         if result.status == "partial":
             percent = 100.0 * result.rays.sum() / job.rays
             progress.note(f"stopped by {signals.name}: {job.path} holds {percent:.3g} % of the rays (partial)")

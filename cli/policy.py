@@ -63,7 +63,7 @@ def _lines(error):
         n = len(error.problems)
         return [*error.problems, f"goniosim: error: {n} mistake{'s' if n > 1 else ''}"]
     if isinstance(error, GoniosimError):
-        return [f"goniosim: error: {error}"]
+        return [*getattr(error, "details", ()), f"goniosim: error: {error}"]
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     what = " ".join(what.split())
     return [f"goniosim: error: {what} - this is a bug in goniosim; rerun with --debug to see where"]

@@ -29,6 +29,20 @@ def tidied_up():
         signal.signal(signal.SIGTERM, earlier)
 
 
+@contextlib.contextmanager
+def undisturbed():
+    """Let signals wait until some files have been moved: moments."""
+    waiting = []
+    earlier = {signum: signal.signal(signum, lambda signum, _: waiting.append(signum)) for signum in NAMES}
+    try:
+        yield
+    finally:
+        for signum, handler in earlier.items():
+            signal.signal(signum, handler)
+        for signum in waiting[:1]:
+            signal.raise_signal(signum)
+
+
 class StopSignals:
     """While active, turns signals into a request to stop.
 

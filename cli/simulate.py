@@ -23,16 +23,18 @@ from .signals import StopSignals
 @click.option("--seed", type=Count(), metavar="S", help="Seed of the random numbers.")
 @click.option("--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default.")
 @set_option
+@click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays, without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("-v", "--verbose", is_flag=True, help="Also show effects and compilation time.")
 @debug_option
 @click.pass_context
-def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose):
+def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, quiet, verbose):
     """Simulate a scene or study file and write the result.
 
-    CONFIG is the file, or - for the standard input. A study writes one file per material into a folder,
-    and leaves alone those that an earlier run has finished. Ctrl-C stops within two seconds and keeps
-    what was gathered, marked as partial.
+    CONFIG is the file, or - for the standard input. A study writes one file per material into a folder.
+    A file that holds the rays asked for, or more, stays as it is; one with fewer is replaced; the result
+    of another scene is an error. Ctrl-C stops within two seconds and keeps what was gathered, marked as
+    partial.
 
     \b
     Examples: goniosim simulate quickstart.yaml
@@ -50,13 +52,14 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
     described = load_config(config, [*overrides, *options])
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
-    todo = [job for job in planned if not job.is_finished()] if many else planned
+    notes = []
+    todo = jobs.sort_out(planned, overwrite, notes.append)
     progress = make_progress(sum(job.rays for job in todo), quiet)
     done = []
     with StopSignals() as signals, contextlib.closing(progress):
-        if len(todo) < len(planned):
-            progress.note(f"{len(planned) - len(todo)} of {len(planned)} materials are finished: skipped")
-        for job, result in jobs.run(todo, progress, signals, verbose):
+        for note in notes:
+            progress.note(note)
+        for job, result in jobs.run(todo, progress, signals, verbose, overwrite):
             done.append(study.row(result, job.path) if many else summary(result, job.path))
     if done and not quiet:
         click.echo(study.study_text(done) if many else done[0])

@@ -11,7 +11,8 @@ code  meaning
 1     an unexpected fault: a bug in goniosim
 2     the command line itself is wrong (unknown option, ...)
 3     the scene file or an override is wrong
-4     the output cannot be written (permission, disk full, ...)
+4     the output cannot be written (permission, disk full, ...), or
+      something stands there that is not to be overwritten
 5     the file is not a goniosim result
 6     the file is a goniosim result, but damaged
 7     the file was written by a newer, incompatible goniosim
@@ -47,9 +48,40 @@ class ConfigError(GoniosimError):
 
 
 class OutputError(GoniosimError):
-    """The output cannot be written."""
+    """The output cannot be written.
+
+    Parameters
+    ----------
+    message : str
+    details : sequence of str
+        Lines that stand before the message, where there is more than one thing to say.
+    """
 
     exit_code = 4
+
+    def __init__(self, message: str, details: Iterable[str] = ()) -> None:
+        self.details = list(details)
+        super().__init__(message)
+
+
+class FewerRaysError(OutputError):
+    """What stands at the output has more rays of the same scene than what should replace it.
+
+    Parameters
+    ----------
+    path : path-like
+    held, offered : str
+        Rays per direction of either.
+
+    Attributes
+    ----------
+    fact : str
+        The message without its remedy.
+    """
+
+    def __init__(self, path: object, held: str, offered: str) -> None:
+        self.fact = f"{path} stays as it is: it holds {held} rays per direction of this scene, the new result {offered}"
+        super().__init__(f"{self.fact}; choose another name, or overwrite=True")
 
 
 class ForeignFileError(GoniosimError):

@@ -143,7 +143,7 @@ class Result:
     config_yaml : str
         The scene that was simulated, complete with defaults and overrides, as YAML.
     config_hash : str
-        Fingerprint of what determines the numbers: not the name, not the threads.
+        Identity of the scene, see `goniosim.scene.Scene.config_hash`: not the name, not the rays, not the threads.
     name : str
         Name of the material.
     status : str

@@ -3,11 +3,11 @@
 import contextlib
 import errno
 import os
-import secrets
 from collections.abc import Iterator
 from pathlib import Path
 
 from .errors import OutputError
+from .parts import Part, remove_dead
 
 StrPath = str | os.PathLike[str]
 
@@ -29,14 +29,6 @@ def make_folder(folder: StrPath) -> None:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: the folder cannot be created: {error.strerror}; choose another place") from error
-
-
-def temporary_beside(target: Path) -> Path:
-    """Name for a file that will be renamed to ``target``.
-
-    Hidden and without its ending, so that nobody takes it for the finished file; cut, since names are limited.
-    """
-    return target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
 
 
 def remedy(error: OSError) -> str:
@@ -68,23 +60,30 @@ class Replacement:
     Attributes
     ----------
     temporary : Path
-        Where to write.
+        Where to write: an empty file, which must not itself be replaced.
+
+    Raises
+    ------
+    OutputError
+        The folder takes no new file.
     """
 
     def __init__(self, path: StrPath) -> None:
         self._path = path
         self._target = Path(os.path.realpath(path))
-        self.temporary = temporary_beside(self._target)
+        remove_dead([self._target])
+        with explained(path):
+            self._part = Part(self._target)
+        self.temporary = self._part.path
 
     def commit(self) -> None:
         """Put the finished file in place: readers see the old file or the new one, never a mixture."""
         with explained(self._path):
-            os.replace(self.temporary, self._target)
+            self._part.move(self._target)
 
     def discard(self) -> None:
         """Remove what was written, unless it was committed."""
-        with contextlib.suppress(OSError):
-            os.unlink(self.temporary)
+        self._part.remove()
 
 
 @contextlib.contextmanager

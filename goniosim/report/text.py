@@ -1,6 +1,7 @@
 """Numbers and tables as plain text."""
 
 import math
+from collections import Counter
 
 import numpy as np
 
@@ -80,6 +81,30 @@ def size(n_bytes):
 def degrees(angle):
     """Format an angle in degrees without useless decimals: ``45``, ``89.99``."""
     return f"{angle:.10g}"
+
+
+def angles(theta_deg):
+    """Format angles in degrees so that no two of them look alike: ``30`` and ``30.0000000000001``.
+
+    Parameters
+    ----------
+    theta_deg : ndarray, shape (M,)
+        Distinct.
+
+    Returns
+    -------
+    list of str
+        As from `degrees`, with more digits only where it takes them.
+    """
+    values = [float(angle) for angle in theta_deg]
+    shown = [degrees(angle) for angle in values]
+    for digits in range(11, 18):
+        uses = Counter(shown)
+        for place, value in enumerate(values):
+            if uses[shown[place]] > 1:
+                # The shortest text that reads back as the number tells any two apart.
+                shown[place] = f"{value:.{digits}g}" if digits < 17 else repr(value).removesuffix(".0")
+    return shown
 
 
 def table(header, rows, indent="  ", gap="   "):

@@ -1,5 +1,6 @@
 """What the user describes: typed, checked, and read from YAML with the line of every mistake."""
 
+from goniosim.scene.differences import differences
 from goniosim.scene.effects import Effect, absent_interfaces, distinct_channels, effects
 from goniosim.scene.example import example
 from goniosim.scene.load import Config, load_config, load_scene, load_scenes, parse_scene
@@ -19,6 +20,7 @@ __all__ = [
     "Simulation",
     "Slice",
     "absent_interfaces",
+    "differences",
     "distinct_channels",
     "effects",
     "example",

@@ -15,6 +15,8 @@ from goniosim.scene.structure import structure_mistakes
 
 MAX_CELLS = 4_000_000
 MAX_DIRECTIONS = 1000
+# Of the simulation: how much to trace and with what. The same numbers come out, or more of them.
+NOT_IDENTITY = ("rays", "threads")
 
 Theta = Number(0.0, 90.0, "be 0 or more and below 90: it is the angle from the normal in degrees", open_high=True)
 CellCount = Number(1, MAX_CELLS, "be a whole number from 1 to 4e6", integer=True)
@@ -185,11 +187,11 @@ class Scene(Part):
         return stream.getvalue()
 
     def config_hash(self) -> str:
-        """Fingerprint of everything that determines the numbers of the result.
+        """Identity of the scene: results of the same identity differ in nothing but their noise.
 
-        The name of the material and the number of threads do not, and neither
-        does the way of writing: a scalar for three equal channels, or media in
-        a row for their sum.
+        The seed belongs to it. The name of the material, the number of rays and
+        that of threads do not, and neither does the way of writing: a scalar
+        for three equal channels, or media in a row for their sum.
 
         Returns
         -------
@@ -201,7 +203,7 @@ class Scene(Part):
             "tau": self.material.tau,
             "incident": self.incident.model_dump(),
             "slice": self.slice.model_dump(),
-            "simulation": self.simulation.model_dump(exclude={"threads"}),
+            "simulation": self.simulation.model_dump(exclude=set(NOT_IDENTITY)),
         }
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()

@@ -1,21 +1,25 @@
 """Result files: the one place that knows HDF5. `data_schema.md` describes the format."""
 
+from goniosim.store.keeping import Standing, look_at, refuse_newer
 from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_be_models_file, open_models
 from goniosim.store.output import Reservation, reserve_output
 from goniosim.store.reader import open_result, read_header
+from goniosim.store.saving import write_result
 from goniosim.store.size import predicted_size
-from goniosim.store.writer import write_result
 
 __all__ = [
     "ModelsFile",
     "ModelsWriter",
     "Reservation",
+    "Standing",
     "is_models_file",
+    "look_at",
     "may_be_models_file",
     "open_models",
     "open_result",
     "predicted_size",
     "read_header",
+    "refuse_newer",
     "reserve_output",
     "write_result",
 ]

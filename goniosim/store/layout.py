@@ -125,7 +125,8 @@ ATTRIBUTES = (
         "/",
         "config_hash",
         "text",
-        "fingerprint of all that determines the numbers (not the name, not the threads): SHA-256, hexadecimal",
+        "identity of the scene: all that determines the numbers but for their noise, the seed included; "
+        "not rays, threads and name. SHA-256, hexadecimal",
     ),
     Attribute("/", "seed", "uint64", "seed of the random numbers"),
     Attribute("/", "status", "text", "`complete`, or `partial` after an interruption"),

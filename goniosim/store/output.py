@@ -4,13 +4,14 @@ import contextlib
 import errno
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Self
 
 from goniosim.errors import OutputError
+from goniosim.parts import Part, remove_dead, turn
 from goniosim.store import userblock
-from goniosim.writing import NO_ROOM, StrPath, explained, remedy, temporary_beside
+from goniosim.writing import NO_ROOM, StrPath, explained, remedy
 
 
 class Reservation:
@@ -34,10 +35,7 @@ class Reservation:
     def __init__(self, target: Path, shown: StrPath) -> None:
         self._target = target
         self._shown = shown
-        self._temporary = temporary_beside(target)
-        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
-        self._descriptor = os.open(self._temporary, flags, 0o666)
-        self._open = True
+        self._part = Part(target)
 
     def __enter__(self) -> Self:
         return self
@@ -58,33 +56,38 @@ class Reservation:
             If there is not enough.
         """
         # Asked first: where a file system cannot allocate, the C library writes block after block instead.
-        disk = os.fstatvfs(self._descriptor)
+        disk = os.fstatvfs(self._part.descriptor)
         if disk.f_blocks and disk.f_bavail * disk.f_frsize < size_bytes:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         try:
-            os.posix_fallocate(self._descriptor, 0, max(1, size_bytes))
+            os.posix_fallocate(self._part.descriptor, 0, max(1, size_bytes))
         except (AttributeError, OSError) as error:
             # Anything else means that this system or file system cannot allocate ahead.
             if getattr(error, "errno", None) in NO_ROOM:
                 raise
 
-    def commit(self, parts: Sequence[bytes]) -> None:
+    def commit(self, parts: Sequence[bytes], check: Callable[[], None]) -> None:
         """Put the finished file in place: readers see the old file or the new one, never a mixture.
 
         Parameters
         ----------
         parts : sequence of bytes
             The content, one part after the other.
+        check : callable
+            Called when no other run replaces the target; raises an OutputError if what stands there must stay.
 
         Raises
         ------
         OutputError
             If the file cannot be written; the target is then as it was.
         """
-        _refuse_to_destroy(self._target, self._shown)
         with explained(self._shown):
-            _write(self._descriptor, parts)
-            os.replace(self._temporary, self._target)
+            _write(self._part.descriptor, parts)
+        with turn(self._target.parent):
+            _refuse_to_destroy(self._target, self._shown)
+            check()
+            with explained(self._shown):
+                self._part.move(self._target)
         # The name itself survives a power cut only after this. Some network file systems refuse it.
         with contextlib.suppress(OSError):
             folder = os.open(self._target.parent, os.O_RDONLY)
@@ -95,11 +98,7 @@ class Reservation:
 
     def release(self) -> None:
         """Close and remove the temporary file, if it is still there."""
-        if self._open:
-            self._open = False
-            os.close(self._descriptor)
-            with contextlib.suppress(OSError):
-                os.unlink(self._temporary)
+        self._part.remove()
 
 
 def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
@@ -110,7 +109,8 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     path : path-like
         Output file. An earlier result may stand there, but nothing else.
     size_bytes : int
-        Predicted size, see `predicted_size`.
+        Predicted size, see `predicted_size`. What killed runs on this output left behind makes room first;
+        not for a size of 0, with which many places can be tried at little cost.
 
     Returns
     -------
@@ -129,6 +129,8 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     if not target.parent.is_dir():
         what = "is not a folder" if target.parent.exists() else "does not exist"
         raise OutputError(f"{path}: the folder {target.parent} {what}; create it, or choose another place")
+    if size_bytes:
+        remove_dead([target])
     try:
         reservation = Reservation(target, path)
     except OSError as error:

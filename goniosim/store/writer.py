@@ -1,4 +1,4 @@
-"""From a result in memory to the bytes of a file, and onto the disk."""
+"""From a result in memory to the bytes of a file."""
 
 import uuid
 from collections.abc import Iterator, Mapping
@@ -7,44 +7,10 @@ from typing import Any
 import h5py
 import numpy as np
 
-from goniosim.errors import OutputError
 from goniosim.result import Component, Result
 from goniosim.store import userblock
 from goniosim.store.encoding import FORMAT, utf8, write_dataset, write_text
 from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, describe
-from goniosim.store.output import Reservation, rescue, reserve_output
-from goniosim.writing import StrPath
-
-
-def write_result(result: Result, path: StrPath, *, reservation: Reservation | None = None) -> None:
-    """Write a result file, whole or not at all.
-
-    Parameters
-    ----------
-    result : Result
-    path : path-like
-        Replaced if it is an earlier result.
-    reservation : Reservation, optional
-        Of the same path, made by `reserve_output` before the computation.
-        It is used up.
-
-    Raises
-    ------
-    OutputError
-        If the file cannot be written there; the result is then saved in the
-        temporary directory, and the message says where.
-    ValueError
-        If the result contradicts the schema (a NaN, a wrong shape): a fault
-        of the program.
-    """
-    parts = encode(result)
-    try:
-        if reservation is None:
-            reservation = reserve_output(path, sum(map(len, parts)))
-        with reservation:
-            reservation.commit(parts)
-    except OutputError as error:
-        raise OutputError(f"{error}; {rescue(parts, path)}") from error
 
 
 def encode(result: Result) -> tuple[bytes, bytes]:

@@ -182,6 +182,8 @@ def test_figures_are_there_in_both_formats_and_nothing_is_left_over(report):
     figures += [f"{name}-lobes-theta_{angle}" for name in angles for angle in angles[name]]
     expected = [f"figures/{name}.{suffix}" for name in figures for suffix in ("png", "svg")]
     assert files == sorted(["errors.csv", "errors.json", "models.h5", *expected])
+    assert sorted(json.loads((report[0] / "errors.json").read_text(encoding="utf-8"))["files"]) == files
+    assert not list(report[0].parent.glob(".*"))
     for name in expected:
         start = (report[0] / name).read_bytes()[:100]
         assert start.startswith(b"\x89PNG" if name.endswith("png") else b"<?xml")

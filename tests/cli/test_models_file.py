@@ -202,7 +202,7 @@ def test_a_report_overwrites_nothing_but_a_report(goniosim, results, name):
 
 def test_a_name_that_leads_elsewhere_is_refused(goniosim, results, folder):
     """Names of materials become names of files; a file from a stranger may hold any."""
-    write_result(make_result(components=INTERNAL, name="../../escaped"), results / "plastic.h5")
+    write_result(make_result(components=INTERNAL, name="../../escaped"), results / "plastic.h5", overwrite=True)
     code, _, err = goniosim("compare", results, "-o", folder / "report")
     assert code == 8
     one_line(err, "plastic.h5", "name")

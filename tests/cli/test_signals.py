@@ -1,9 +1,11 @@
 """Ctrl-C and SIGTERM, in a process of its own."""
 
+import json
 import signal
 import threading
 
 import pytest
+from goniosim_cli.signals import undisturbed
 
 from goniosim.store import open_result, write_result
 from synthetic import make_result
@@ -52,9 +54,11 @@ def test_a_stopped_study_keeps_its_part_and_goes_on_later(start, goniosim, folde
     assert process.returncode == 130
     assert open_result(folder / "out" / "coat-0.1.h5").status == "partial"
     assert open_result(folder / "out" / "coat-0.2.h5").rays.tolist() == [1000]
+    # All that was asked for is there, and more.
+    (folder / "out" / "coat-0.2.h5").unlink()
     _, _, err = goniosim("simulate", "study.yaml", "--rays", "1e3", "-o", "out")
     assert "2 of 3 materials are finished: skipped" in err
-    assert open_result(folder / "out" / "coat-0.1.h5").status == "complete"
+    assert open_result(folder / "out" / "coat-0.1.h5").rays[0] > 1000
 
 
 _SLOW_COMPILER = """
@@ -118,11 +122,25 @@ def test_a_comparison_that_is_stopped_leaves_nothing_unfinished(start, folder):
     """Neither the hidden file of slices nor a process that draws."""
     plastic = make_result(components=("reflection/direct", "reflection/internal"), rows=90, columns=360)
     write_result(plastic, folder / "plastic.h5")
+    (folder / "report").mkdir()
+    earlier = json.dumps({"filetype": "goniosim-errors", "results": [], "files": ["errors.json", "errors.csv"]})
+    (folder / "report" / "errors.json").write_text(earlier)
+    (folder / "report" / "errors.csv").write_text("the earlier table")
     process = start("compare", "plastic.h5", "-o", "report", "--models", "ww09", "--subcells", "1")
     _wait_for(process, "drawing")
     process.send_signal(signal.SIGTERM)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 143
     assert (out, err.strip()) == ("", "goniosim: stopped by SIGTERM")
-    left = [path.name for path in (folder / "report").rglob("*") if path.is_file()]
-    assert not any(name.startswith(".") or name in ("models.h5", "errors.csv") for name in left)
+    # The earlier report is complete, and nothing lies beside it.
+    assert sorted(path.name for path in (folder / "report").rglob("*")) == ["errors.csv", "errors.json"]
+    assert (folder / "report" / "errors.json").read_text() == earlier
+    assert not list(folder.glob(".*"))
+
+
+def test_a_signal_waits_while_files_are_moved():
+    moved = []
+    with pytest.raises(KeyboardInterrupt), undisturbed():
+        signal.raise_signal(signal.SIGINT)
+        moved.append("all")
+    assert moved == ["all"]

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 SIMULATE, COMPARE, VARY, WRITE = "simulate", "compare", "vary", "write"
 
-# Like goniosim, leaves alone a result that has the rays asked for.
+# Like goniosim, leaves alone a result that has the rays asked for, and replaces it for more.
 GONIOSIM = """\
 #!/bin/sh
 echo $1 >> log
@@ -71,7 +71,7 @@ def test_a_second_run_does_nothing_but_look_at_the_results(make):
     assert make() == [SIMULATE] * 3
 
 
-def test_other_rays_start_all_over(make):
+def test_more_rays_start_all_over(make):
     make("RAYS=1e6")
     time.sleep(0.05)
     assert make("RAYS=1e7") == [SIMULATE] * 3 + [COMPARE, VARY, WRITE]

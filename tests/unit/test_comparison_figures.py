@@ -39,7 +39,7 @@ def make_entry(label, model=None, options="", level=0.1, theta_deg=60.0, dirac=N
 
 
 def make_direction(*made, theta_deg=60.0):
-    return entries.Direction(0, theta_deg, made[0][1], [entry for entry, _ in made])
+    return entries.Direction(0, theta_deg, f"{theta_deg:g}", made[0][1], [entry for entry, _ in made])
 
 
 @pytest.fixture

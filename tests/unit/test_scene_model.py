@@ -194,7 +194,8 @@ def test_yaml_is_complete_and_readable():
 
 
 def test_hash_ignores_what_does_not_determine_the_numbers():
-    assert patina(simulation={"threads": 3}).config_hash() == patina().config_hash()
+    for same in ({"threads": 3}, {"rays": 1e6}):
+        assert patina(simulation=same).config_hash() == patina().config_hash()
     one = layered(dielectric(), medium(0.75), WHITE)
     for same in (
         layered(dielectric(), medium([0.75, 0.75, 0.75]), WHITE),
@@ -209,7 +210,6 @@ def test_hash_ignores_what_does_not_determine_the_numbers():
 def test_hash_tells_apart_what_determines_the_numbers():
     scenes = [
         patina(),
-        patina(simulation={"rays": 1e6}),
         patina(simulation={"seed": 2}),
         patina(simulation={"orders": 2}),
         patina(slice={"parametrization": "half"}),
@@ -231,7 +231,7 @@ def test_hash_tells_apart_what_determines_the_numbers():
 
 def test_hash_stays_what_it_was():
     # Result files carry this fingerprint; if it changes, old files no longer match their scene.
-    assert patina().config_hash() == "e3278037d5f1f864719f48c7e8ae252b30c1f27bc9d42f63b851b802c2819165"
+    assert patina().config_hash() == "6e439dd716df053cbcd491f09a54faa5c484b54a29068be482e77ff693cb632a"
 
 
 def test_reading_scenes_needs_nothing_heavy():

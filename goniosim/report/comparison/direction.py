@@ -3,7 +3,6 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from .. import text
 from ..drawing import panels, tone, zoom
 from ..drawing.bands import bar
 from ..drawing.disks import ASPECT, Board
@@ -53,7 +52,7 @@ def direction_figure(name, component, direction):
     height = TOP + max(rows * cell, lobes_height + near + LIST_GAP + legend.list_height(entries))
     height += caption_height(words, width)
     figure = Figure(figsize=(width, height), dpi=style.DISKS_DPI)
-    title(figure, f"{name},  {component},  light at {text.degrees(direction.theta_deg)}°")
+    title(figure, f"{name},  {component},  light at {direction.angle}°")
     half_disk.draw(panels.place(figure, LEFT, TOP, lobes, lobes_height), direction, size=1.25)
     if near:
         _closer(panels.place(figure, NEAR_LEFT, TOP + lobes_height + 0.15, lobes - 0.6, NEAR_HEIGHT), direction)

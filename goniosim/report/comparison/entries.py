@@ -6,6 +6,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from ...result import Cells
+from .. import text
 from ..drawing import inplane, panels, tone, view, zoom
 from . import labels
 
@@ -62,6 +63,8 @@ class Direction:
     ----------
     number : int
     theta_deg : float
+    angle : str
+        The same in words that no other direction of the material shares.
     cells : goniosim.result.Cells
     entries : list of Entry
         The simulation first, if it is there.
@@ -69,6 +72,7 @@ class Direction:
 
     number: int
     theta_deg: float
+    angle: str
     cells: Cells
     entries: list
 
@@ -134,7 +138,7 @@ def of_comparison(comparison, number):
             words = labels.error_text(error.rmse, error.stderr, error.upper, error.significant, converged)
             seen = see(variant.label, variant.model, variant.options_text, slices, error=words, converged=converged)
             entries.append(seen)
-    return Direction(number, theta_deg, result.cells, entries)
+    return Direction(number, theta_deg, text.angles(result.theta_deg)[number], result.cells, entries)
 
 
 def of_models(material, models, number):
@@ -154,7 +158,7 @@ def of_models(material, models, number):
     theta_deg = float(material.theta_deg[number])
     see = partial(_entry, material.cells, number, theta_deg, material.main_component)
     entries = [see(model.label, model.model, model.options, slices) for model, slices in models]
-    return Direction(number, theta_deg, material.cells, entries)
+    return Direction(number, theta_deg, text.angles(material.theta_deg)[number], material.cells, entries)
 
 
 def twins(directions, tolerances):

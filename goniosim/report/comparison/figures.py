@@ -9,13 +9,14 @@ FORMATS = ("png", "svg")
 EXTENTS = ("all", "overview", "none")
 
 
-def material_figures(comparison, folder, extent="all"):
+def material_figures(comparison, stem, extent="all"):
     """Figures of one material.
 
     Parameters
     ----------
     comparison : goniosim.compare.material.MaterialComparison
-    folder : Path
+    stem : Path
+        Beginning of the file names.
     extent : str
         ``all``, ``overview`` (lobes and views, all directions in one figure) or ``none``.
 
@@ -28,9 +29,9 @@ def material_figures(comparison, folder, extent="all"):
         return []
     name, component = comparison.result.name, comparison.components[0]
     seen = [entries.of_comparison(comparison, number) for number in range(len(comparison.result.theta_deg))]
-    figures = overviews(name, component, seen, folder / name, FORMATS)
+    figures = overviews(name, component, seen, stem, FORMATS)
     if extent == "all":
-        figures += single_directions(name, component, seen, folder / name, FORMATS)
+        figures += single_directions(name, component, seen, stem, FORMATS)
     return figures
 
 

@@ -6,43 +6,17 @@ import json
 
 from ...compare.rows import COLUMNS
 from ...cores import available_cores
-from ...errors import OutputError
 from ...provenance import provenance
-from ...writing import explained, write_text
+from ...writing import write_text
 
 FILETYPE = "goniosim-errors"
+_ANGLES = ("theta_deg", "worst_theta_deg")
 CSV, JSON = "errors.csv", "errors.json"
-# How earlier files of these names begin.
-_BEGINNINGS = {CSV: ",".join(list(COLUMNS)[:3]), JSON: f'{{\n "filetype": "{FILETYPE}"'}
 
 
 def origin_of(subcells):
     """Who computed the errors, when and with what, as a dict of str to str."""
     return {**provenance(available_cores()), "subcells": str(subcells)}
-
-
-def check_replaceable(folder):
-    """Make sure, before anything is computed, that only tables of earlier comparisons will be replaced.
-
-    Parameters
-    ----------
-    folder : Path
-
-    Raises
-    ------
-    OutputError
-    """
-    for name, beginning in _BEGINNINGS.items():
-        path = folder / name
-        if not path.exists():
-            continue
-        with explained(path), open(path, "rb") as stream:
-            found = stream.read(len(beginning))
-        if found != beginning.encode():
-            raise OutputError(
-                f"{path}: exists and is not a table of errors, so it is not overwritten; "
-                "write the report into another folder"
-            )
 
 
 def write_csv(path, rows, origin):
@@ -66,11 +40,11 @@ def write_csv(path, rows, origin):
     writer = csv.DictWriter(stream, [*COLUMNS, *same], lineterminator="\n")
     writer.writeheader()
     for row in rows:
-        writer.writerow({name: _shown(value) for name, value in row.items()} | same)
+        writer.writerow({name: (_angle if name in _ANGLES else _shown)(value) for name, value in row.items()} | same)
     write_text(path, stream.getvalue())
 
 
-def write_json(path, rows, origin, sources):
+def write_json(path, rows, origin, sources, written):
     """Write ``errors.json``: the same rows with units and provenance.
 
     Parameters
@@ -79,12 +53,15 @@ def write_json(path, rows, origin, sources):
         As in `write_csv`.
     sources : list of dict
         `goniosim.compare.summary.Summary.source` of every material.
+    written : list of str
+        All files of the report: what the next one may replace or remove.
     """
     head = {
         "filetype": FILETYPE,
         "provenance": origin,
         "columns": {name: {"unit": unit, "meaning": meaning} for name, (unit, meaning) in COLUMNS.items()},
         "results": sources,
+        "files": written,
     }
     text = json.dumps(head, indent=1, allow_nan=False)
     lines = ",\n".join(json.dumps(row, allow_nan=False) for row in rows)
@@ -95,3 +72,9 @@ def _shown(value):
     if value is None:
         return ""
     return f"{value:.9g}" if isinstance(value, float) else value
+
+
+def _angle(value):
+    """An angle in so many digits that it reads back as the very number, as two may differ in the last one."""
+    short = _shown(value)
+    return repr(value) if isinstance(value, float) and float(short) != value else short

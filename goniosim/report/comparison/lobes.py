@@ -2,7 +2,6 @@
 
 from matplotlib.figure import Figure
 
-from .. import text
 from ..drawing import panels
 from ..drawing.legend import caption, caption_height, title
 from . import entries, half_disk, legend
@@ -42,6 +41,6 @@ def lobes_figure(name, component, directions):
         left, down = MARGIN + column * (WIDTH + MARGIN), top + row * (HEIGHT + ROOM) + 0.2
         axes = panels.place(figure, left, down, WIDTH, HEIGHT)
         half_disk.draw(axes, direction)
-        axes.set_title(f"{text.degrees(direction.theta_deg)}°", fontsize=10, pad=3, loc="left")
+        axes.set_title(f"{direction.angle}°", fontsize=10, pad=3, loc="left")
     caption(figure, words)
     return figure

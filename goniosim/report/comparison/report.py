@@ -10,14 +10,13 @@ from ...errors import UnusableResultError
 from ...integration import Pool
 from ...scene.model import FileName
 from ...store import ModelsWriter, open_result, read_header
-from ...writing import make_folder
 from ..drawing.files import write_figure
+from ..drawing.names import distinct
 from ..drawing.studio import Studio
 from . import files
 from .figures import joint_figures, material_figures
+from .folder import FIGURES, MODELS, ReportFolder
 from .ranking import ranking
-
-FIGURES = "figures"
 
 
 def check_headers(paths, allow_partial):
@@ -27,6 +26,11 @@ def check_headers(paths, allow_partial):
     ----------
     paths : list of Path
     allow_partial : bool
+
+    Returns
+    -------
+    list of str
+        Names of the materials.
 
     Raises
     ------
@@ -51,6 +55,7 @@ def check_headers(paths, allow_partial):
                 "rename one of them and simulate it anew"
             )
         names[name] = path
+    return list(names)
 
 
 class Report:
@@ -59,7 +64,9 @@ class Report:
     Parameters
     ----------
     folder : Path
-        Created if it does not exist.
+        Where it appears with `commit`, see `goniosim.report.comparison.folder.ReportFolder`.
+    materials : list of str
+        Names of all that will be compared.
     request : dict of str to dict
         From `goniosim.compare.variants.check_request`.
     subcells : int
@@ -69,27 +76,33 @@ class Report:
     Raises
     ------
     OutputError
-        The folder cannot be written, or holds other files of the names that the report uses.
+        The folder cannot be written, or holds something else.
     """
 
-    def __init__(self, folder, request, subcells, figures="all"):
-        self._folder = folder
+    def __init__(self, folder, materials, request, subcells, figures="all"):
+        self._origin = files.origin_of(subcells)
+        self._stems = dict(zip(materials, distinct(materials), strict=True))
+        self._place = ReportFolder(folder, list(self._stems.values()))
+        self._folder = self._place.building
+        try:
+            (self._folder / FIGURES).mkdir()
+            self._models = ModelsWriter(self._folder / MODELS, self._origin)
+        except BaseException:
+            self._place.discard()
+            raise
         self._request = request
         self._subcells = subcells
         self._figures = figures
         self._summaries = []
-        self._origin = files.origin_of(subcells)
-        make_folder(folder / FIGURES)
-        files.check_replaceable(folder)
-        self._models = ModelsWriter(folder / "models.h5", self._origin)
         self._pool = Pool()
         self._studio = Studio(available_cores())
 
     def close(self):
-        """Release what is open; an unfinished file of slices is removed."""
+        """Release what is open; a report that is not in place is removed."""
         self._studio.close()
         self._pool.shutdown()
         self._models.discard()
+        self._place.discard()
 
     def add(self, path, say):
         """Compare one result, write its slices and draw its figures.
@@ -109,7 +122,7 @@ class Report:
             slices = {part: one for (label, part), one in comparison.slices.items() if label == variant.label}
             attributes = {"model": variant.model, "options": variant.options_text}
             self._models.add_model(result, variant.label, attributes, slices)
-        figures = material_figures(comparison, self._folder / FIGURES, self._figures)
+        figures = material_figures(comparison, self._folder / FIGURES / self._stems[result.name], self._figures)
         if figures:
             say(f"{result.name}: drawing")
             # Not while models are timed: both want all processors.
@@ -117,7 +130,7 @@ class Report:
         self._summaries.append(summarise(comparison))
 
     def finish(self):
-        """Write the tables and the joint figures.
+        """Write the tables and the joint figures, so that all is there but not in place.
 
         Returns
         -------
@@ -128,8 +141,18 @@ class Report:
         rows = [row for summary in self._summaries for row in summary.rows]
         sources = [summary.source for summary in self._summaries]
         files.write_csv(self._folder / files.CSV, rows, self._origin)
-        files.write_json(self._folder / files.JSON, rows, self._origin, sources)
         if self._figures != "none":
             for figure in joint_figures(self._summaries, self._folder / FIGURES):
                 write_figure(*figure)
+        written = [*self._place.names(), files.JSON]
+        files.write_json(self._folder / files.JSON, rows, self._origin, sources, written)
         return ranking(self._summaries)
+
+    def commit(self):
+        """Put the report in place of an earlier one.
+
+        Raises
+        ------
+        OutputError
+        """
+        self._place.commit()

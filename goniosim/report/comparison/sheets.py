@@ -1,6 +1,5 @@
 """The figures of one material, whether its models are compared with a simulation or stand alone."""
 
-from .. import text
 from ..drawing import directions
 from .direction import direction_figure
 from .lobes import lobes_figure
@@ -38,7 +37,7 @@ def single_directions(name, component, seen, stem, suffixes):
     """A figure for each direction; arguments and result as in `overviews`."""
     return [
         (
-            stem.with_name(f"{stem.name}-lobes-theta_{text.degrees(direction.theta_deg)}"),
+            stem.with_name(f"{stem.name}-lobes-theta_{direction.angle}"),
             suffixes,
             direction_figure,
             name,

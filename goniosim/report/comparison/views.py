@@ -2,7 +2,6 @@
 
 from matplotlib.figure import Figure
 
-from .. import text
 from ..drawing.disks import ASPECT, Board
 from ..drawing.legend import caption, caption_height, title
 from . import labels, style
@@ -48,6 +47,6 @@ def views_figure(name, component, directions):
                 labels.above(disk, entry, STEP - 0.06)
             labels.below(disk, entry, STEP - 0.06)
         y = 1.0 - (top + 0.5 * DISK) / height
-        figure.text(0.12 / width, y, f"{text.degrees(direction.theta_deg)}°", fontsize=10, va="center")
+        figure.text(0.12 / width, y, f"{direction.angle}°", fontsize=10, va="center")
     caption(figure, words)
     return figure

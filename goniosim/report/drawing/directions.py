@@ -5,6 +5,9 @@ import numpy as np
 from ...errors import UnusableResultError
 from .. import text
 
+# How exactly an angle has to be given, in degrees.
+TYPED = 1e-6
+
 
 def spread(n, most):
     """Numbers of at most ``most`` of ``n`` directions, evenly picked: more would make unreadable pictures."""
@@ -34,9 +37,11 @@ def chosen(theta_deg, wanted):
         return list(range(len(theta_deg)))
     numbers = []
     for angle in wanted:
-        (found,) = np.nonzero(np.isclose(theta_deg, angle, rtol=0.0, atol=1e-6))
-        if not found.size:
-            simulated = ", ".join(map(text.degrees, theta_deg))
+        distance = np.abs(theta_deg - angle)
+        nearest = int(np.argmin(distance))
+        # Not a number is far from everything.
+        if not distance[nearest] <= TYPED:
+            simulated = ", ".join(text.angles(theta_deg))
             raise UnusableResultError(f"theta {text.degrees(angle)} was not simulated; there is {simulated}")
-        numbers.append(int(found[0]))
-    return numbers
+        numbers.append(nearest)
+    return list(dict.fromkeys(numbers))

@@ -1,7 +1,11 @@
 """Figures as files: one look, one resolution, and the same bytes for the same figure."""
 
+import re
+from pathlib import Path
+
 from matplotlib import rc_context
 
+from ...errors import OutputError
 from ...writing import replacing
 
 STYLE = {
@@ -16,7 +20,18 @@ STYLE = {
     # Disks that share their axes stay pictures of their own.
     "image.composite_image": False,
 }
-_WITHOUT_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+# By this a figure is known for one of ours; no date, so that equal figures are equal files.
+MAKER = "goniosim"
+_METADATA = {
+    "png": {"Software": MAKER},
+    "svg": {"Creator": MAKER, "Date": None},
+    "pdf": {"Creator": MAKER, "CreationDate": None},
+}
+_MARKS = {
+    "png": re.compile(rb"\x89PNG.{,200}tEXtSoftware\0goniosim", re.DOTALL),
+    "svg": re.compile(rb"<\?xml.{,2000}<dc:creator>\s*<cc:Agent>\s*<dc:title>goniosim<", re.DOTALL),
+    "pdf": re.compile(rb"%PDF.*/Creator \(goniosim\)", re.DOTALL),
+}
 
 
 def write_figure(stem, suffixes, make, *arguments):
@@ -45,6 +60,36 @@ def write_figure(stem, suffixes, make, *arguments):
         for suffix in suffixes:
             path = stem.with_name(f"{stem.name}.{suffix}")
             with replacing(path) as temporary:
-                figure.savefig(temporary, format=suffix, dpi="figure", metadata=_WITHOUT_DATE[suffix])
+                figure.savefig(temporary, format=suffix, dpi="figure", metadata=_METADATA[suffix])
             written.append(path)
     return written
+
+
+def refuse_foreign(paths):
+    """Make sure, before anything is drawn, that only figures of goniosim will be replaced.
+
+    Parameters
+    ----------
+    paths : iterable of path-like
+
+    Raises
+    ------
+    OutputError
+    """
+    for path in map(Path, paths):
+        if path.exists() and not is_figure(path):
+            raise OutputError(
+                f"{path}: exists and is not a figure that goniosim drew, so it is not overwritten; "
+                "choose another folder with -o, or remove it"
+            )
+
+
+def is_figure(path):
+    """Whether a file is a figure that `write_figure` wrote."""
+    mark = _MARKS.get(path.suffix[1:])
+    if mark is None or not path.is_file():
+        return False
+    try:
+        return mark.match(path.read_bytes()) is not None
+    except OSError:
+        return False

@@ -11,7 +11,8 @@ from ...writing import make_folder
 from ..comparison import entries
 from ..comparison.sheets import overviews, single_directions
 from ..drawing import directions
-from ..drawing.files import write_figure
+from ..drawing.files import refuse_foreign, write_figure
+from ..drawing.names import distinct
 from ..simulation.figures import draw as draw_result
 
 # Of so many materials, only overviews are drawn unless some are chosen.
@@ -60,19 +61,28 @@ def draw(models, folder, stem, *, suffix="png", theta_deg=None, materials=None, 
     UnusableResultError
         If a material, a model or an angle is not there.
     OutputError
-        If a file cannot be written.
+        If a file cannot be written, or something else stands there than a figure of goniosim.
     """
     chosen = [models.material(name) for name in _chosen("material", materials, models.materials)]
     labels = _chosen("model", labels, [*dict.fromkeys(_names(chosen))])
     for material in chosen:
         directions.chosen(material.theta_deg, theta_deg)
     make_folder(folder)
-    for material in chosen:
-        if labels:
-            yield from _alone(models, material, labels, folder / f"{stem}-{material.name}", suffix, theta_deg)
-        else:
-            wanted = theta_deg or materials or len(chosen) <= FEW
-            yield from _together(models, material, folder / f"{stem}-{material.name}", suffix, theta_deg, wanted)
+    if labels:
+        seen = [
+            (material, entry)
+            for material in chosen
+            for entry in material.models
+            if entry.label in labels or entry.model in labels
+        ]
+        parts = distinct(f"{material.name}-{entry.label}" for material, entry in seen)
+        for (material, entry), part in zip(seen, parts, strict=True):
+            one = _alone(models, material, entry)
+            yield from draw_result(one, folder, f"{stem}-{part}", suffix=suffix, theta_deg=theta_deg)
+        return
+    wanted = theta_deg or materials or len(chosen) <= FEW
+    for material, part in zip(chosen, distinct(material.name for material in chosen), strict=True):
+        yield from _together(models, material, folder / f"{stem}-{part}", suffix, theta_deg, wanted)
 
 
 def _together(models, material, stem, suffix, theta_deg, with_directions):
@@ -85,23 +95,19 @@ def _together(models, material, stem, suffix, theta_deg, with_directions):
     figures = [] if theta_deg else overviews(name, component, seen, stem, [suffix])
     if with_directions:
         figures += single_directions(name, component, seen, stem, [suffix])
+    refuse_foreign(f"{figure[0]}.{suffix}" for figure in figures)
     for figure in figures:
         yield from write_figure(*figure)
 
 
-def _alone(models, material, labels, stem, suffix, theta_deg):
-    for entry in material.models:
-        if entry.label in labels or entry.model in labels:
-            one = OneModel(
-                name=f"{material.name},  {entry.label}",
-                theta_deg=material.theta_deg,
-                channels=material.channels,
-                cells=material.cells,
-                components=models.slices(material, entry),
-            )
-            # Brackets mean something to a shell.
-            label = entry.label.rstrip("]").replace("[", "-")
-            yield from draw_result(one, stem.parent, f"{stem.name}-{label}", suffix=suffix, theta_deg=theta_deg)
+def _alone(models, material, entry):
+    return OneModel(
+        name=f"{material.name},  {entry.label}",
+        theta_deg=material.theta_deg,
+        channels=material.channels,
+        cells=material.cells,
+        components=models.slices(material, entry),
+    )
 
 
 def _names(materials):

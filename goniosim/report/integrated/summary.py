@@ -59,7 +59,7 @@ def _material_lines(materials):
     header = ["material", "main component", "slices", "channels", "rays of the\nsimulation", "models"]
     angles = {}
     for material in materials:
-        angles.setdefault(", ".join(map(text.degrees, material.theta_deg)), []).append(material.name)
+        angles.setdefault(", ".join(text.angles(material.theta_deg)), []).append(material.name)
     shown = [f"  incident theta [deg]: {each}{_of(names, materials)}" for each, names in angles.items()]
     return [*text.table(header, rows), *shown]
 

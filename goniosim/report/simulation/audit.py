@@ -139,7 +139,7 @@ def direct_lines(result):
     lines = [
         "Direct reflection, sampled against integrated: largest of "
         f"{len(groups) * len(result.theta_deg)} deviations {abs(deviation[i, c]):.1f} sigma "
-        f"(theta {text.degrees(result.theta_deg[i])}, channel {result.channels[c]})"
+        f"(theta {text.angles(result.theta_deg)[i]}, channel {result.channels[c]})"
     ]
     if abs(deviation[i, c]) > ALARMING_SIGMAS[result.status]:
         lines.append("  Warning: chance explains such a deviation once in 16000 times; do not trust this file.")
@@ -150,11 +150,11 @@ def _rows(result, arrays, columns):
     """One row per direction and group of channels that agree in all ``arrays``."""
     groups = text.channel_groups(result.channels, arrays)
     rows = []
-    for i, theta in enumerate(result.theta_deg):
+    for i, theta in enumerate(text.angles(result.theta_deg)):
         if result.rays[i] == 0:
-            rows.append([text.degrees(theta), "-", *("not traced" for _ in columns)])
+            rows.append([theta, "-", *("not traced" for _ in columns)])
             continue
         for number, (label, c) in enumerate(groups):
-            angle = text.degrees(theta) if number == 0 else ""
+            angle = theta if number == 0 else ""
             rows.append([angle, label, *(column(i, c) for column in columns)])
     return rows

@@ -44,7 +44,7 @@ def direction_figure(result, i):
     theta_deg = float(result.theta_deg[i])
     numbers = view.disk(result.cells, i, theta_deg, PIXELS)
     figure = Figure(figsize=(WIDTH, HEADER + ROW * len(result.components)))
-    title = f"{result.name},  light at {text.degrees(theta_deg)}°"
+    title = f"{result.name},  light at {text.angles(result.theta_deg)[i]}°"
     legend.title(figure, title)
     board = Board(figure)
     planes, enlarged = zip(

@@ -3,7 +3,7 @@
 from ...writing import make_folder
 from .. import text
 from ..drawing import directions
-from ..drawing.files import write_figure
+from ..drawing.files import refuse_foreign, write_figure
 from .direction import direction_figure
 from .overview import overview_figure
 
@@ -33,14 +33,12 @@ def draw(result, folder, stem, *, suffix="png", theta_deg=None):
     UnusableResultError
         If an angle was not simulated.
     OutputError
-        If a file cannot be written.
+        If a file cannot be written, or something else stands there than a figure of goniosim.
     """
     numbers = directions.chosen(result.theta_deg, theta_deg)
+    shown = text.angles(result.theta_deg)
     make_folder(folder)
-    written = []
-    if not theta_deg:
-        written += write_figure(folder / stem, [suffix], overview_figure, result)
-    for i in numbers:
-        name = f"{stem}-theta_{text.degrees(result.theta_deg[i])}"
-        written += write_figure(folder / name, [suffix], direction_figure, result, i)
-    return written
+    figures = [] if theta_deg else [(folder / stem, [suffix], overview_figure, result)]
+    figures += [(folder / f"{stem}-theta_{shown[i]}", [suffix], direction_figure, result, i) for i in numbers]
+    refuse_foreign(f"{figure[0]}.{suffix}" for figure in figures)
+    return [path for figure in figures for path in write_figure(*figure)]

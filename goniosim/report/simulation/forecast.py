@@ -172,7 +172,7 @@ def _event_cap(one):
 
 def _heading(scene):
     chosen = scene.slice
-    angles = ", ".join(map(text.degrees, scene.incident.theta_deg))
+    angles = ", ".join(text.angles(scene.incident.theta_deg))
     return "\n".join(
         [
             f"{scene.material.name}: valid",

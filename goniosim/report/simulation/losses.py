@@ -80,4 +80,4 @@ def left_out_lines(result):
 
 
 def _place(result, i, c):
-    return f"theta {text.degrees(result.theta_deg[i])}, channel {result.channels[c]}"
+    return f"theta {text.angles(result.theta_deg)[i]}, channel {result.channels[c]}"

@@ -60,14 +60,14 @@ def _row(figure, board, top, result, side, shown, numbers):
     figure.text(0.2 / width, 1.0 - top / height, TITLES[side], fontsize=10.5, fontweight="bold")
     parts = _on(result, side)
     total = _sum(parts)
+    angles = text.angles(result.theta_deg)
     planes = []
     for column, (i, each) in enumerate(zip(shown, numbers, strict=True)):
-        theta_deg = float(result.theta_deg[i])
         left = LEFT + COLUMN * column
         disk = board.disk(left - 0.22, top + 0.3, DISK_WIDTH / disks.ASPECT)
         plane = panels.place(figure, left, top + PLANE_TOP, PLANE_WIDTH, PLANE_HEIGHT)
         _column(disk, plane, result, total, i, each, panels.unseen_cells(parts, result.cells, i))
-        disk.above(f"{text.degrees(theta_deg)}°", fontsize=10)
+        disk.above(f"{angles[i]}°", fontsize=10)
         plane.set_xticks([-60, 0, 60])
         plane.tick_params(labelsize=7.5)
         planes.append(plane)

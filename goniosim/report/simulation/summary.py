@@ -62,7 +62,7 @@ def heading_lines(result):
     slices = f"{result.cells.parametrization} slices, {rows} x {columns} cells"
     lines = [
         f"{result.name}  ({result.status})",
-        f"  incident theta [deg]: {', '.join(map(text.degrees, result.theta_deg))}",
+        f"  incident theta [deg]: {', '.join(text.angles(result.theta_deg))}",
         f"  {slices}, channels {', '.join(result.channels)}",
         f"  rays per direction: {text.counts(result.rays)}, seed {result.seed}",
     ]

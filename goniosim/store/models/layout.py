@@ -38,7 +38,7 @@ ATTRIBUTES = (
     Attribute("MATERIAL", "name", "text", "name of the material"),
     Attribute("MATERIAL", "config_yaml", "text", "the scene of the result that was compared"),
     Attribute("MATERIAL", "config_yaml_sha256", "text", "SHA-256 of config_yaml, hexadecimal"),
-    Attribute("MATERIAL", "config_hash", "text", "fingerprint of that result"),
+    Attribute("MATERIAL", "config_hash", "text", "identity of the scene of that result"),
     Attribute("MATERIAL", "main_component", "text", "the component by which the models were ranked"),
     Attribute("MATERIAL", "models", "text", "names of the groups MODEL, one in a line, in the order of comparison"),
     Attribute("MATERIAL/cells", "parametrization", "text", "`classic` or `half`"),

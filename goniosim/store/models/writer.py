@@ -44,10 +44,15 @@ class ModelsWriter:
         self._replacement = Replacement(path)
         self._materials: dict[str, list[str]] = {}
         self._places: dict[bytes, str] = {}
-        with self._explained():
-            self._file = h5py.File(self._replacement.temporary, "w", libver=FORMAT)
-            for name, text in {"filetype": FILETYPE, "schema_version": SCHEMA_VERSION, **provenance}.items():
-                write_text(self._file, name, text)
+        try:
+            with self._explained():
+                # The lock on the file in the making is ours already.
+                self._file = h5py.File(self._replacement.temporary, "w", libver=FORMAT, locking=False)
+                for name, text in {"filetype": FILETYPE, "schema_version": SCHEMA_VERSION, **provenance}.items():
+                    write_text(self._file, name, text)
+        except BaseException:
+            self._replacement.discard()
+            raise
 
     def commit(self) -> None:
         """Put the finished file in place."""

@@ -1,0 +1,222 @@
+"""Hidden files and folders in the making, ``.NAME.OWNER.part``: whose they are, and whether that run still lives.
+
+A run holds a lock on its part for as long as it lives; the system lets go of it however the run ends. Where the file
+system has no locks, the name tells which process of which machine it was.
+"""
+
+import contextlib
+import fcntl
+import hashlib
+import os
+import platform
+import re
+import secrets
+import shutil
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+# Of a folder, the file in it that is locked.
+_LOCK = ".lock"
+_LONGEST = 40
+_PART = re.compile(r"\.(.*)\.([0-9a-f]{8})-([0-9a-f]{8})-(\d+)-[0-9a-f]{8}\.part", re.DOTALL)
+_TRIES = 20
+
+
+class Part:
+    """A file or folder in the making, beside what it will become.
+
+    Its name is hidden and without the usual ending, so that nobody takes it for the finished file; cut, since names
+    are limited.
+
+    Parameters
+    ----------
+    target : Path
+        What it will become.
+    folder : bool
+        Whether it is a folder.
+    inside : bool
+        Whether it lies in the target, which is a folder then, instead of beside it.
+
+    Attributes
+    ----------
+    path : Path
+        To write to. A file exists from the start, and must be written without being replaced.
+    descriptor : int
+        Of the file, or of a lock in the folder.
+
+    Raises
+    ------
+    OSError
+        If the folder takes no new file.
+    """
+
+    def __init__(self, target: Path, *, folder: bool = False, inside: bool = False) -> None:
+        self._folder = folder
+        home = target if inside else target.parent
+        for _ in range(_TRIES):
+            owner = f"{_host()}-{_boot()}-{os.getpid()}-{secrets.token_hex(4)}"
+            self.path = home / f".{target.name[:_LONGEST]}.{owner}.part"
+            if folder:
+                self.path.mkdir()
+            self.descriptor = os.open(_lock_of(self.path, folder), _FLAGS | os.O_CREAT | os.O_EXCL, 0o666)
+            # Between the two calls another run may have taken it for an orphan.
+            if _lock(self.descriptor) is not False and self._is_there():
+                return
+            os.close(self.descriptor)
+        raise OSError(f"{home}: every new file in it disappears")
+
+    def _is_there(self) -> bool:
+        try:
+            return os.path.samestat(os.fstat(self.descriptor), os.stat(_lock_of(self.path, self._folder)))
+        except FileNotFoundError:
+            return False
+
+    def move(self, target: Path) -> None:
+        """Put it in place: of an earlier file, or where there is no folder or an empty one.
+
+        Parameters
+        ----------
+        target : Path
+
+        Raises
+        ------
+        OSError
+            It is then still a part.
+        """
+        os.replace(self.path, target)
+        if self._folder:
+            with contextlib.suppress(OSError):
+                os.unlink(target / _LOCK)
+        os.close(self.descriptor)
+        self.descriptor = -1
+
+    def remove(self) -> None:
+        """Remove it, unless it was moved; harmless when repeated."""
+        if self.descriptor >= 0:
+            _remove(self.path, self._folder)
+            os.close(self.descriptor)
+            self.descriptor = -1
+
+
+def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
+    """Remove parts that runs on these outputs left behind when they were killed.
+
+    Those of a living run are kept, and those of another machine of which nobody here can tell.
+
+    Parameters
+    ----------
+    targets : iterable of Path
+        Files or folders that such parts would have become.
+    inside : bool
+        Look in the targets, which are folders, instead of beside them.
+    """
+    homes: dict[Path, set[str]] = {}
+    for target in targets:
+        homes.setdefault(target if inside else target.parent, set()).add(target.name[:_LONGEST])
+    for home, names in homes.items():
+        with contextlib.suppress(OSError):
+            for entry in list(os.scandir(home)):
+                match = _PART.fullmatch(entry.name)
+                if match and match[1] in names:
+                    _remove_if_dead(Path(entry.path), entry.is_dir(follow_symlinks=False), *match.groups()[1:])
+
+
+@contextlib.contextmanager
+def turn(folder: Path, patience: float = 2.0) -> Iterator[None]:
+    """Let one run after the other put files into a folder.
+
+    Parameters
+    ----------
+    folder : Path
+    patience : float
+        Seconds to wait. Somebody may hold a lock on the folder for reasons of his own, and some file systems have
+        none: a file then appears whole all the same.
+    """
+    import time
+
+    descriptor = -1
+    try:
+        with contextlib.suppress(OSError):
+            descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+            last = time.monotonic() + patience
+            while _lock(descriptor) is False and time.monotonic() < last:
+                time.sleep(0.01)
+        yield
+    finally:
+        if descriptor >= 0:
+            os.close(descriptor)
+
+
+_FLAGS = os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW
+
+
+def _remove_if_dead(path: Path, folder: bool, host: str, boot: str, pid: str) -> None:
+    here, since_boot = host == _host(), boot == _boot()
+    # A lock may not reach from one machine to another.
+    if not (here or since_boot):
+        return
+    free = None
+    descriptor = -1
+    try:
+        with contextlib.suppress(OSError):
+            descriptor = os.open(_lock_of(path, folder), _FLAGS)
+            free = _lock(descriptor)
+        dead = free or (free is None and here and not (since_boot and _runs(int(pid))))
+        if dead:
+            _remove(path, folder)
+    finally:
+        if descriptor >= 0:
+            os.close(descriptor)
+
+
+def _remove(path: Path, folder: bool) -> None:
+    if folder:
+        # A process that helps may put a last file into it meanwhile.
+        for _ in range(_TRIES):
+            shutil.rmtree(path, ignore_errors=True)
+            if not path.exists():
+                break
+    else:
+        with contextlib.suppress(OSError):
+            os.unlink(path)
+
+
+def _lock_of(path: Path, folder: bool) -> Path:
+    return path / _LOCK if folder else path
+
+
+def _lock(descriptor: int) -> bool | None:
+    """Try to lock an open file: False if somebody else holds it, None where there are no locks."""
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return None
+    return True
+
+
+def _runs(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        pass
+    return True
+
+
+def _host() -> str:
+    return _short(platform.node())
+
+
+def _boot() -> str:
+    """Which start of which machine this is; where the system does not say, the machine."""
+    try:
+        return _short(Path("/proc/sys/kernel/random/boot_id").read_text())
+    except OSError:
+        return _host()
+
+
+def _short(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
