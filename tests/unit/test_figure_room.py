@@ -35,7 +35,7 @@ def make_direction(theta_deg):
         for model in ("ww09", "a_model_from_elsewhere_with_a_long_name")
         for label, options in ((model, ""), (f"{model}[{OPTIONS}]", OPTIONS))
     ]
-    return entries.Direction(0, theta_deg, result.cells, [seen, *models])
+    return entries.Direction(0, theta_deg, f"{theta_deg:g}", result.cells, [seen, *models])
 
 
 def long_summary(name, alpha, category="metals"):
