@@ -101,6 +101,7 @@ class _Run:
     cpu_seconds: float = 0.0
     seconds: float = 0.0
     events: int = 0
+    traced: int = 0
 
     def __post_init__(self):
         directions = len(self.plan.theta_deg)
@@ -164,7 +165,7 @@ class _Run:
                         round_, rest = divmod(reduced, len(self.plan.theta_deg))
                         if rest == 0 and round_ in checkpoints and not stop.is_set():
                             self._checkpoint()
-                    progress(sum(self.rays), total_rays)
+                    progress(self.traced, total_rays)
             except BaseException:
                 stop.set()
                 raise
@@ -180,6 +181,7 @@ class _Run:
         self.tallies[direction].histogram += tally.histogram
         self.ledgers[direction].extend(tally.ledgers.copy())
         self.part_rays[direction].extend(report.part_rays)
+        self.traced += report.rays
         self.cpu_seconds += report.cpu_seconds
         self.events += report.events
 
