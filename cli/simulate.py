@@ -32,6 +32,7 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
     A study writes one file per material into a folder, and leaves alone those that an earlier run has
     finished. Ctrl-C stops within two seconds and keeps what was gathered, marked as partial.
     """
+    from goniosim.engine import require_memory
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study
     from goniosim.report.simulation.summary import summary
@@ -45,6 +46,8 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
     many = is_study(config)
     planned = jobs.plan(scenes, output, folder=Path(output or study_name(config)) if many else None)
     todo = [job for job in planned if not job.is_finished()] if many else planned
+    for job in todo:
+        require_memory(job.scene)
     progress = make_progress(sum(job.rays for job in todo), quiet)
     done = []
     with StopSignals() as signals, contextlib.closing(progress):
@@ -52,6 +55,7 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
             progress.note(f"{len(planned) - len(todo)} of {len(planned)} materials are finished: skipped")
         for job, result in jobs.run(todo, progress, signals, verbose):
             done.append(study.row(result, job.path) if many else summary(result, job.path))
+            del result
     if done and not quiet:
         click.echo(study.study_text(done) if many else done[0])
     if signals.signum is not None:

@@ -11,7 +11,8 @@ code  meaning
 1     an unexpected fault: a bug in goniosim
 2     the command line itself is wrong (unknown option, ...)
 3     the scene file or an override is wrong
-4     the output cannot be written (permission, disk full, ...)
+4     the output cannot be written (permission, disk full, ...), or
+      there is not enough memory
 5     the file is not a goniosim result
 6     the file is a goniosim result, but damaged
 7     the file was written by a newer, incompatible goniosim
@@ -48,6 +49,12 @@ class ConfigError(GoniosimError):
 
 class OutputError(GoniosimError):
     """The output cannot be written."""
+
+    exit_code = 4
+
+
+class ResourceError(GoniosimError):
+    """The machine has not enough memory for what was asked."""
 
     exit_code = 4
 

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 LARGEST_UNIT = 1 << 20
 # Enough units for all cores to be busy, and, by their parts, for a standard error by scatter.
 FEWEST_UNITS = 16
+# Ledgers of a direction, of which the standard errors of the audit are made; from twice as many on, neighbours
+# are added up, so that a long run holds no more than a short one.
+MOST_LEDGERS = 2048
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..cores import available_cores
-from ..errors import StoppedError
+from ..errors import ResourceError, StoppedError
 from ..integration import Pool
 from ..provenance import provenance
 from ..result import Cost, Result
@@ -17,9 +16,10 @@ from . import estimate
 from .direct import direct_reflection
 from .faint import faint_weights
 from .layout import DOWN, UP
+from .memory import require_memory, threads_of
 from .plan import make_plan
 from .probe import warm_up
-from .schedule import Schedule
+from .schedule import MOST_LEDGERS, Schedule
 from .unit import Tally, Workspace, unit_key
 
 _POLL_SECONDS = 0.1
@@ -48,6 +48,8 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     ------
     goniosim.errors.ConfigError
         If an override is out of range.
+    goniosim.errors.ResourceError
+        If it does not fit into the memory that is free.
     goniosim.errors.StoppedError
         If it was stopped before any work unit was finished.
     """
@@ -55,8 +57,17 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     overrides = [f"simulation.{key}={value}" for key, value in wanted.items() if value is not None]
     if overrides:
         scene = parse_scene(scene.to_yaml(), overrides=overrides)
-    threads = scene.simulation.threads or available_cores()
-    plan = make_plan(scene)
+    require_memory(scene)
+    try:
+        return _simulate(scene, make_plan(scene), threads_of(scene), progress, stop)
+    except MemoryError as error:
+        raise ResourceError(
+            "memory ran out: another process took it, or a limit is lower than it looks; "
+            "use fewer threads, coarser slices or fewer incident directions per file"
+        ) from error
+
+
+def _simulate(scene, plan, threads, progress, stop):
     run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)
     warm_up(plan)
     stop = stop or threading.Event()
@@ -88,6 +99,10 @@ def _integrate_direct(plan, threads, stop):
     """`direct_reflection` of every direction; before tracing, so that a stop need not wait for it."""
     with Pool(threads) as pool:
         return [direct_reflection(plan, direction, pool, stop) for direction in range(len(plan.theta_deg))]
+
+
+def _added_in_pairs(values):
+    return [a + b for a, b in zip(values[::2], values[1::2], strict=True)]
 
 
 @dataclass
@@ -181,6 +196,9 @@ class _Run:
         self.tallies[direction].histogram += tally.histogram
         self.ledgers[direction].extend(tally.ledgers.copy())
         self.part_rays[direction].extend(report.part_rays)
+        if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
+            self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
+            self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
         self.traced += report.rays
         self.cpu_seconds += report.cpu_seconds
         self.events += report.events
