@@ -202,24 +202,28 @@ _PURPOSE = {
 
 
 def _remedy(plan, rays, threads, room):
-    """The smallest change that makes the simulation fit; else the one that helps most."""
-    fewer = _most(lambda n: _needed(plan, rays, n).peak <= room, threads - 1)
-    if fewer:
-        return f"--threads {fewer} would fit"
+    """The smallest change that makes the simulation fit: of the threads, the directions or the cells."""
+    if fewer := _most(lambda n: _needed(plan, rays, n).peak <= room, threads - 1):
+        return f"{_counted(fewer, 'thread')} would fit (--threads {fewer})"
     also = "with --threads 1, " if threads > 1 else ""
+    orders = ", or fewer orders (simulation.orders)" if plan.orders else ""
 
     def fits(**changes):
         return _needed(replace(plan, **changes), rays, 1).peak <= room
 
-    most = _most(lambda n: fits(theta_deg=plan.theta_deg[:n]), len(plan.theta_deg) - 1)
-    largest = _needed(plan, rays, 1).largest
-    if largest == "queues" and not most:
-        return f"{also}give the stack fewer interfaces"
-    if most:
-        return f"{also}{most} incident directions per file would fit"
-    if plan.orders:
-        return f"{also}ask for fewer orders (simulation.orders) or coarser slices (slice.rows, slice.columns)"
-    return f"{also}choose coarser slices (slice.rows, slice.columns)"
+    if most := _most(lambda n: fits(theta_deg=plan.theta_deg[:n]), len(plan.theta_deg) - 1):
+        return f"{also}{_counted(most, 'incident direction')} per file would fit{orders}"
+    for halvings in range(1, max(plan.rows, plan.columns).bit_length()):
+        rows, columns = max(1, plan.rows >> halvings), max(1, plan.columns >> halvings)
+        if fits(rows=rows, columns=columns):
+            return f"{also}slices of {rows} x {columns} cells would fit (slice.rows, slice.columns){orders}"
+    if _needed(plan, rays, 1).largest == "queues":
+        return f"{also}give the stack fewer interfaces, or use a machine with more memory"
+    return "close other programs, or use a machine with more memory"
+
+
+def _counted(number, thing):
+    return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
 def _most(fits, n):

@@ -178,7 +178,7 @@ def cost_text(made):
         lines = [
             f"{len(made)} materials, all valid; speeds from short probes",
             *text.table(header, rows),
-            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)}, and {text.size(peak)} of memory at a time.",
+            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)}; {text.size(peak)} of memory at a time.",
         ]
     lines += [_event_cap(one) for one in made if one.lost_event_cap >= NOTEWORTHY_CAP]
     lines += [f"  Warning: memory: {one.name} does not fit here: {one.shortage}" for one in made if one.shortage]
