@@ -75,7 +75,7 @@ def file_size(scene):
 
     names = components(scene)
     orders = (scene.simulation.orders or 0) * (len(names) - 1)
-    return predicted_size(
+    arrays = predicted_size(
         len(scene.incident.theta_deg),
         3,
         scene.slice.rows,
@@ -84,6 +84,7 @@ def file_size(scene):
         orders,
         scene.slice.parametrization,
     )
+    return arrays + len(scene.to_yaml().encode())
 
 
 def forecasts(scenes):
@@ -178,7 +179,8 @@ def cost_text(made):
         lines = [
             f"{len(made)} materials, all valid; speeds from short probes",
             *text.table(header, rows),
-            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)}; {text.size(peak)} of memory at a time.",
+            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)} on disk and, at a time, "
+            f"{text.size(peak)} of memory.",
         ]
     lines += [_event_cap(one) for one in made if one.lost_event_cap >= NOTEWORTHY_CAP]
     lines += [f"  Warning: memory: {one.name} does not fit here: {one.shortage}" for one in made if one.shortage]
