@@ -11,7 +11,7 @@ from ..errors import ResourceError
 from ..free_memory import free_memory, resident_memory
 from .layout import DOWN, N_LEDGER, N_SCRATCH, UP, WEIGHT
 from .plan import make_plan
-from .schedule import MOST_LEDGERS, Schedule
+from .schedule import MOST_LEDGERS, Schedule, units_in_flight
 from .tally import record_length
 from .unit import BATCH, PARTS, queue_capacity
 
@@ -110,7 +110,9 @@ def _needed(plan, rays, threads):
     cells = plan.rows * plan.columns
     record = record_length(distinct)
     tally = plan.n_slots * cells * record * _NUMBER
-    ledgers = min(PARTS * Schedule(directions, rays).rounds, 2 * MOST_LEDGERS)
+    schedule = Schedule(directions, rays)
+    threads = min(threads, len(schedule))
+    ledgers = min(PARTS * schedule.rounds, 2 * MOST_LEDGERS)
     # A slice for each way out, and one for each order.
     counts = [int(plan.slots[side, 1]) for side in (UP, DOWN)]
     sampled = sum((1 + count if plan.orders else 1) for count in counts if count)
@@ -122,7 +124,7 @@ def _needed(plan, rays, threads):
         cells=directions * cells * geometry,
         direct=directions * 2 * distinct * cells * _NUMBER,
         tallies=directions * tally,
-        threads=(threads + 2) * tally + threads * _THREAD,
+        threads=units_in_flight(schedule, threads) * tally + threads * _THREAD,
         queues=threads * _queues(plan) + 2 * directions * _thresholds(plan),
         # The balance of one direction needs three copies of its ledgers.
         audit=(directions + 3) * ledgers * (N_LEDGER * distinct * _NUMBER + _LEDGER),

@@ -43,3 +43,8 @@ class Schedule:
         """Rounds after which to note cost and error: 1, 2, 4, ... and the last."""
         rounds = [1 << i for i in range(self.rounds.bit_length()) if 1 << i < self.rounds]
         return [*rounds, self.rounds]
+
+
+def units_in_flight(schedule, threads):
+    """Work units that are traced, or wait for their turn to be added up, at the same time."""
+    return min(threads + 2, len(schedule))

@@ -19,7 +19,7 @@ from .layout import DOWN, UP
 from .memory import require_memory, threads_of
 from .plan import make_plan
 from .probe import warm_up
-from .schedule import MOST_LEDGERS, Schedule
+from .schedule import MOST_LEDGERS, Schedule, units_in_flight
 from .unit import Tally, Workspace, unit_key
 
 _POLL_SECONDS = 0.1
@@ -139,7 +139,7 @@ class _Run:
         start, cpu_start = time.perf_counter(), time.thread_time()
         faint = faint_weights(self.plan)
         self.cpu_seconds += time.thread_time() - cpu_start
-        in_flight = self.threads + 2
+        in_flight = units_in_flight(self.schedule, self.threads)
         spare = [Tally(self.plan) for _ in range(in_flight)]
         local = threading.local()
         pending = {}

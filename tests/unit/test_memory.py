@@ -116,7 +116,7 @@ def test_just_enough_is_enough(room):
 
 DEEP = [dielectric(1.5 if i % 2 else 1.3) for i in range(800)] + [lambert(0.9)]
 HELP = {
-    "threads": (SLAB, [30.0], {"rows": 400, "threads": 64}, 8e8, "threads would fit (--threads "),
+    "threads": (SLAB, [0.0, 30.0], {"rows": 400, "threads": 64}, 7e8, "threads would fit (--threads "),
     "directions": (
         PLASTIC,
         [float(i) for i in range(80)],
@@ -192,6 +192,11 @@ def test_ledgers_that_are_added_up_keep_the_balance(monkeypatch):
     np.testing.assert_array_equal(
         after.components["reflection/internal"].energy, before.components["reflection/internal"].energy
     )
+
+
+def test_threads_without_work_take_nothing():
+    few, many = (memory_needed(make_scene(SLAB, [30.0], threads=threads)) for threads in (16, 4096))
+    assert few == many
 
 
 def test_the_peak_is_that_of_a_phase():
