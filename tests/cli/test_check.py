@@ -2,6 +2,7 @@
 
 import json
 import os
+import subprocess
 import sys
 
 import pytest
@@ -164,3 +165,17 @@ def test_hundreds_of_interfaces_take_little_memory_and_no_time_of_the_system(fol
     )
     taken, system_seconds = _peak(["simulate", "deep.yaml", "--threads", 1, "-q", "-o", "deep.h5"])
     assert taken < 1e9 and system_seconds < 5.0
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell the size of a process")
+def test_a_real_limit_on_address_space_is_met(folder):
+    limited = (
+        "import resource, sys; resource.setrlimit(resource.RLIMIT_AS, (3 * 10**9,) * 2); "
+        "from goniosim_cli.main import main; sys.argv[0] = 'goniosim'; main()"
+    )
+    options = ["--set", "slice.rows=2000", "--set", "slice.columns=2000", "-o", "big.h5"]
+    command = [sys.executable, "-c", limited, "simulate", "scene.yaml", *options]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 4 and "not enough memory" in done.stderr and "ulimit -v" in done.stderr
+    assert sorted(os.listdir(folder)) == ["scene.yaml", "study.yaml"]

@@ -9,6 +9,7 @@ from goniosim import free_memory as free_module
 from goniosim.engine import memory, memory_needed, require_memory, shortage, simulate
 from goniosim.errors import ResourceError
 from goniosim.free_memory import free_memory, resident_memory
+from goniosim.report.simulation.forecast import file_size
 from reference.scenes import dielectric, lambert, make_scene, medium
 
 # The module, which the function of the same name hides.
@@ -204,3 +205,8 @@ def test_the_peak_is_that_of_a_phase():
     assert need.peak >= need.program + need.result + need.file
     assert need.peak < sum(getattr(need, name) for name in need.__dataclass_fields__)
     assert need.largest == "file"
+
+
+def test_the_text_of_the_scene_counts_in_the_size_of_the_file():
+    deep, flat = (make_scene(layers, 30.0) for layers in (DEEP, [DEEP[0], DEEP[-1]]))
+    assert file_size(deep) - file_size(flat) == len(deep.to_yaml()) - len(flat.to_yaml()) > 10_000
