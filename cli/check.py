@@ -1,25 +1,57 @@
 """`goniosim check`: whether the scene is right, what it calls for, what it will cost."""
 
+import json
+from pathlib import Path
+
 import click
 
-from .options import set_option
+from .options import PATH, Count, set_option
 from .policy import debug_option
 
 
 @click.command()
-@click.argument("config")
+@click.argument("config", type=PATH)
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    metavar="OUT",
+    help="See also whether OUT, the result file or the folder of a study, can be written and has room on its disk.",
+)
+@click.option("--rays", type=Count(), metavar="N", help="Rays per incident direction, such as 1e7.")
+@click.option("--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default.")
 @set_option
+@click.option("--json", "as_json", is_flag=True, help="For programs: seconds, bytes and effects as JSON.")
 @debug_option
-def check(config, overrides):
-    """Validate CONFIG and predict time and file size.
+def check(config, output, rays, threads, overrides, as_json):
+    """Validate CONFIG and predict time, file size and memory.
 
-    CONFIG is a scene or a study file. The time is predicted from a short probe of the speed here.
-    """
+    CONFIG is a scene or a study file, or - for the standard input. The time is predicted from a short
+    probe of the speed here; file size and memory are upper estimates. Nothing is written.
+
+    \b
+    Examples: goniosim check quickstart.yaml
+              goniosim check quickstart.yaml --rays 1e8 --json
+    """  # noqa: D301
     from goniosim.report.simulation import forecast
-    from goniosim.scene import load_scenes
+    from goniosim.scene import load_config
 
-    scenes = load_scenes(config, overrides)
-    if len(scenes) == 1:
+    from . import jobs
+
+    given = {"rays": rays, "threads": threads}
+    options = [f"simulation.{name}={value}" for name, value in given.items() if value is not None]
+    described = load_config(config, [*overrides, *options])
+    scenes, many = described.scenes, described.study is not None
+    if output:
+        jobs.require_room(scenes, Path(output), many)
+    made = forecast.forecasts(scenes)
+    if as_json:
+        answer = forecast.study_as_dict(described.study, scenes, made) if many else forecast.as_dict(*scenes, *made)
+        click.echo(json.dumps(answer, indent=2, allow_nan=False))
+        return
+    if not many:
         click.echo(forecast.effects_text(scenes[0]))
         click.echo("")
-    click.echo(forecast.cost_text(forecast.forecasts(scenes)))
+    click.echo(forecast.cost_text(made))
+    if output:
+        click.echo(f"  {output} can be written, and there is room for it.")

@@ -146,6 +146,38 @@ def _kept(kept, planned):
     return f"{len(kept)} of {planned} materials are finished: skipped (their files hold {held} rays per direction)"
 
 
+def require_room(scenes, output, many):
+    """Make sure that the results could be written, and leave nothing behind.
+
+    Parameters
+    ----------
+    scenes : list of Scene
+    output : Path
+        Result file, or folder of the results of a study.
+    many : bool
+        Whether it is a study.
+
+    Raises
+    ------
+    OutputError
+        Also if results of other scenes stand there.
+    """
+    from goniosim.report.simulation.forecast import file_size
+    from goniosim.store import reserve_output
+
+    paths = [output / f"{scene.material.name}.h5" for scene in scenes] if many else [output]
+    folder = paths[0].parent
+    if folder.exists():
+        _look_at([Job(scene, path) for scene, path in zip(scenes, paths, strict=True)])
+    else:
+        # It will be made: then the room is where it will stand.
+        standing = next(parent for parent in folder.absolute().parents if parent.exists())
+        paths = [standing / path.name for path in paths[:1]]
+    for path in paths[1:]:
+        reserve_output(path, 0).release()
+    reserve_output(paths[0], sum(map(file_size, scenes))).release()
+
+
 def run(jobs, progress, signals, verbose, overwrite=False):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
     from goniosim.report.simulation.forecast import effects_text
@@ -180,6 +212,8 @@ def run(jobs, progress, signals, verbose, overwrite=False):
         if warning := event_cap(result):
             progress.note(f"{label}: {warning}")
         yield job, result
+        # Not to be held while the next material is at work.
+        del result
 
 
 def _simulate(scene, label, progress, signals):

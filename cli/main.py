@@ -33,7 +33,7 @@ Exit codes:
   1    a bug in goniosim; --debug shows where
   2    the command line is wrong
   3    the scene file or an override is wrong
-  4    the output cannot be written, or would replace something
+  4    the output cannot be written or would replace something, or memory is short
   5    the file is not of goniosim
   6    the file is damaged
   7    the file is of a newer goniosim

@@ -6,7 +6,7 @@ import traceback
 
 import click
 
-from goniosim.errors import ConfigError, GoniosimError
+from goniosim.errors import ConfigError, GoniosimError, ResourceError
 
 from .hints import HintingGroup
 
@@ -50,7 +50,8 @@ class PolicyGroup(HintingGroup):
                 traceback.print_exception(error)
             for line in _lines(error):
                 click.echo(line, err=True)
-            ctx.exit(getattr(error, "exit_code", 1))
+            code = ResourceError.exit_code if isinstance(error, MemoryError) else 1
+            ctx.exit(getattr(error, "exit_code", code))
 
 
 def say_error(message):
@@ -64,6 +65,8 @@ def _lines(error):
         return [*error.problems, f"goniosim: error: {n} mistake{'s' if n > 1 else ''}"]
     if isinstance(error, GoniosimError):
         return [*getattr(error, "details", ()), f"goniosim: error: {error}"]
+    if isinstance(error, MemoryError):
+        return ["goniosim: error: memory ran out; close other programs, or give fewer or smaller files at a time"]
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     what = " ".join(what.split())
     return [f"goniosim: error: {what} - this is a bug in goniosim; rerun with --debug to see where"]

@@ -40,6 +40,7 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, qui
     Examples: goniosim simulate quickstart.yaml
               goniosim simulate quickstart.yaml --rays 1e7 --set simulation.orders=3
     """  # noqa: D301
+    from goniosim.engine import require_memory
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study
     from goniosim.report.simulation.summary import summary
@@ -54,6 +55,8 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, qui
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
     notes = []
     todo = jobs.sort_out(planned, overwrite, notes.append)
+    for job in todo:
+        require_memory(job.scene)
     progress = make_progress(sum(job.rays for job in todo), quiet)
     done = []
     with StopSignals() as signals, contextlib.closing(progress):
@@ -61,6 +64,7 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, qui
             progress.note(note)
         for job, result in jobs.run(todo, progress, signals, verbose, overwrite):
             done.append(study.row(result, job.path) if many else summary(result, job.path))
+            del result
     if done and not quiet:
         click.echo(study.study_text(done) if many else done[0])
     if signals.signum is not None:

@@ -11,8 +11,9 @@ code  meaning
 1     an unexpected fault: a bug in goniosim
 2     the command line itself is wrong (unknown option, ...)
 3     the scene file or an override is wrong
-4     the output cannot be written (permission, disk full, ...), or
-      something stands there that is not to be overwritten
+4     the output cannot be written (permission, disk full, ...),
+      something stands there that is not to be overwritten, or
+      there is not enough memory
 5     the file is not a goniosim result
 6     the file is a goniosim result, but damaged
 7     the file was written by a newer, incompatible goniosim
@@ -82,6 +83,12 @@ class FewerRaysError(OutputError):
     def __init__(self, path: object, held: str, offered: str) -> None:
         self.fact = f"{path} stays as it is: it holds {held} rays per direction of this scene, the new result {offered}"
         super().__init__(f"{self.fact}; choose another name, or overwrite=True")
+
+
+class ResourceError(GoniosimError):
+    """The machine has not enough memory for what was asked."""
+
+    exit_code = 4
 
 
 class ForeignFileError(GoniosimError):

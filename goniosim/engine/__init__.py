@@ -1,6 +1,16 @@
-"""The Monte Carlo engine: `simulate`, and `probe` for a short trial."""
+"""The Monte Carlo engine: `simulate`, `probe` for a short trial, and what a simulation needs of memory."""
 
+from .memory import memory_needed, require_memory, shortage, threads_of
 from .probe import Probe, probe, warm_up
 from .simulate import simulate
 
-__all__ = ["Probe", "probe", "simulate", "warm_up"]
+__all__ = [
+    "Probe",
+    "memory_needed",
+    "probe",
+    "require_memory",
+    "shortage",
+    "simulate",
+    "threads_of",
+    "warm_up",
+]

@@ -47,28 +47,34 @@ def to_bsdf(energy, geometry):
     return np.divide(energy, geometry.projected_solid_angle, out=np.zeros_like(energy), where=valid)
 
 
-def _assemble(plan, slices, hits, contains_delta):
-    """A `Component` from (energy, stderr) pairs per direction on the distinct channels."""
-    fields = {"energy": [], "stderr": [], "bsdf": [], "bsdf_stderr": []}
-    for (energy, stderr), geometry in zip(slices, plan.geometry, strict=True):
-        fields["energy"].append(energy[plan.position])
-        fields["stderr"].append(stderr[plan.position])
-        fields["bsdf"].append(to_bsdf(energy, geometry)[plan.position])
-        fields["bsdf_stderr"].append(to_bsdf(stderr, geometry)[plan.position])
-    return Component(
-        **{name: np.stack(arrays) for name, arrays in fields.items()},
-        hits=None if hits is None else np.stack(hits).astype(np.int64),
+def _assemble(plan, slices, sampled, contains_delta):
+    """A `Component` from energy, stderr and hits (None if not sampled) per direction on the distinct channels.
+
+    ``slices`` may be a generator: of fine slices, only those of one direction are in memory besides the result.
+    """
+    shape = (len(plan.theta_deg), len(plan.position), plan.rows, plan.columns)
+    found = Component(
+        *(np.empty(shape) for _ in range(4)),
+        hits=np.empty((shape[0], *shape[2:]), np.int64) if sampled else None,
         contains_delta=contains_delta,
     )
+    for m, (energy, stderr, hits) in enumerate(slices):
+        found.energy[m] = energy[plan.position]
+        found.stderr[m] = stderr[plan.position]
+        found.bsdf[m] = to_bsdf(energy, plan.geometry[m])[plan.position]
+        found.bsdf_stderr[m] = to_bsdf(stderr, plan.geometry[m])[plan.position]
+        if sampled:
+            found.hits[m] = hits
+    return found
 
 
 def _sampled(plan, tallies, rays, first, count, contains_delta):
-    slices, hits = [], []
-    for tally, n in zip(tallies, rays, strict=True):
-        total, squares, seen = moments(tally.histogram, plan, first, count)
-        slices.append(mean_and_error(total, squares, n))
-        hits.append(seen)
-    return _assemble(plan, slices, hits, contains_delta)
+    def slices():
+        for tally, n in zip(tallies, rays, strict=True):
+            total, squares, hits = moments(tally.histogram, plan, first, count)
+            yield *mean_and_error(total, squares, n), hits
+
+    return _assemble(plan, slices(), True, contains_delta)
 
 
 def components(plan, tallies, rays, direct):
@@ -88,7 +94,7 @@ def components(plan, tallies, rays, direct):
     -------
     dict of str to goniosim.result.Component
     """
-    found = {"reflection/direct": _assemble(plan, direct, None, bool(plan.mirrors[0]))}
+    found = {"reflection/direct": _assemble(plan, ((*pair, None) for pair in direct), False, bool(plan.mirrors[0]))}
     for side, name in COMPONENT_OF.items():
         first, count, lowest = (int(value) for value in plan.slots[side])
         if count == 0:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -46,8 +47,6 @@ class Plan:
         Orders to tell apart, 0 for none.
     slots : ndarray of int64, shape (2, 3)
         For exits upwards and downwards: first histogram, number of histograms, first order.
-    geometry : list of goniosim.slices.Geometry
-        One for each direction.
     """
 
     kinds: np.ndarray
@@ -66,7 +65,12 @@ class Plan:
     parametrization_name: str
     rows: int
     columns: int
-    geometry: list
+
+    @cached_property
+    def geometry(self):
+        """The cells, a `goniosim.slices.Geometry` for each direction; computed when first asked for."""
+        name, rows, columns = self.parametrization_name, self.rows, self.columns
+        return [slice_geometry(name, rows, columns, theta) for theta in self.theta_deg]
 
     @property
     def n_distinct(self):
@@ -164,7 +168,6 @@ def make_plan(scene):
         parametrization_name=scene.slice.parametrization,
         rows=rows,
         columns=columns,
-        geometry=[slice_geometry(scene.slice.parametrization, rows, columns, t) for t in theta_deg],
     )
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cores import available_cores
 from .faint import faint_weights
 from .layout import LOST_CAP
+from .memory import threads_of
 from .plan import Plan, make_plan
 from .unit import Tally, Workspace, unit_key
 
@@ -54,10 +54,10 @@ class Probe:
     lost_event_cap: float
 
 
-def probe(scene, seconds=1.0, threads=None):
+def probe(scene, seconds=1.0):
     """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`."""
     plan = make_plan(scene)
-    threads = threads or scene.simulation.threads or available_cores()
+    threads = threads_of(scene)
     compile_seconds = warm_up(plan)
     directions = len(plan.theta_deg)
     faint = faint_weights(plan)

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..cores import available_cores
-from ..errors import StoppedError
+from ..errors import ResourceError, StoppedError
 from ..integration import Pool
 from ..provenance import provenance
 from ..result import Cost, Result
@@ -17,9 +16,10 @@ from . import estimate
 from .direct import direct_reflection
 from .faint import faint_weights
 from .layout import DOWN, UP
+from .memory import require_memory, threads_of
 from .plan import make_plan
 from .probe import warm_up
-from .schedule import Schedule
+from .schedule import MOST_LEDGERS, Schedule, units_in_flight
 from .unit import Tally, Workspace, unit_key
 
 _POLL_SECONDS = 0.1
@@ -48,6 +48,8 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     ------
     goniosim.errors.ConfigError
         If an override is out of range.
+    goniosim.errors.ResourceError
+        If it does not fit into the memory that is free.
     goniosim.errors.StoppedError
         If it was stopped before any work unit was finished.
     """
@@ -55,8 +57,17 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     overrides = [f"simulation.{key}={value}" for key, value in wanted.items() if value is not None]
     if overrides:
         scene = parse_scene(scene.to_yaml(), overrides=overrides)
-    threads = scene.simulation.threads or available_cores()
-    plan = make_plan(scene)
+    require_memory(scene)
+    try:
+        return _simulate(scene, make_plan(scene), threads_of(scene), progress, stop)
+    except MemoryError as error:
+        raise ResourceError(
+            "memory ran out: another process took it, or a limit is lower than it looks; "
+            "use fewer threads, coarser slices or fewer incident directions per file"
+        ) from error
+
+
+def _simulate(scene, plan, threads, progress, stop):
     run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)
     warm_up(plan)
     stop = stop or threading.Event()
@@ -90,6 +101,10 @@ def _integrate_direct(plan, threads, stop):
         return [direct_reflection(plan, direction, pool, stop) for direction in range(len(plan.theta_deg))]
 
 
+def _added_in_pairs(values):
+    return [a + b for a, b in zip(values[::2], values[1::2], strict=True)]
+
+
 @dataclass
 class _Run:
     plan: object
@@ -101,6 +116,7 @@ class _Run:
     cpu_seconds: float = 0.0
     seconds: float = 0.0
     events: int = 0
+    traced: int = 0
 
     def __post_init__(self):
         directions = len(self.plan.theta_deg)
@@ -123,7 +139,7 @@ class _Run:
         start, cpu_start = time.perf_counter(), time.thread_time()
         faint = faint_weights(self.plan)
         self.cpu_seconds += time.thread_time() - cpu_start
-        in_flight = self.threads + 2
+        in_flight = units_in_flight(self.schedule, self.threads)
         spare = [Tally(self.plan) for _ in range(in_flight)]
         local = threading.local()
         pending = {}
@@ -164,7 +180,7 @@ class _Run:
                         round_, rest = divmod(reduced, len(self.plan.theta_deg))
                         if rest == 0 and round_ in checkpoints and not stop.is_set():
                             self._checkpoint()
-                    progress(sum(self.rays), total_rays)
+                    progress(self.traced, total_rays)
             except BaseException:
                 stop.set()
                 raise
@@ -180,6 +196,10 @@ class _Run:
         self.tallies[direction].histogram += tally.histogram
         self.ledgers[direction].extend(tally.ledgers.copy())
         self.part_rays[direction].extend(report.part_rays)
+        if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
+            self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
+            self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
+        self.traced += report.rays
         self.cpu_seconds += report.cpu_seconds
         self.events += report.events
 

@@ -1,5 +1,6 @@
 """One work unit: a share of the rays of one direction, traced on one thread into a tally of its own."""
 
+import math
 import time
 from dataclasses import dataclass
 
@@ -59,6 +60,18 @@ class UnitReport:
         return sum(self.part_rays)
 
 
+def queue_capacity(queues):
+    """Rays that each of so many queues must have room for.
+
+    In units of a batch, no j of n queues hold more than j (1 + 1/j + 1/(j + 1) + ... + 1/n) together, so none
+    holds more than 1 + (1 + 1/2 + ... + 1/n). It is so after a launch, which adds one batch while
+    every queue holds less than one. Serving takes a batch from the fullest queue, and adds no more in
+    all. If the fullest is one of the j, these gain nothing. If not, they held at most the share
+    j / (j + 1) of what they and the fullest did, and gain one at most: that is the bound again.
+    """
+    return math.ceil(BATCH * (1.0 + math.fsum(1.0 / j for j in range(1, queues + 1))))
+
+
 class Workspace:
     """Queues and scratch arrays of one thread, used for one work unit after the other.
 
@@ -78,8 +91,7 @@ class Workspace:
         self.plan = plan
         self.state = np.zeros(N_STATE, np.int64)
         self.filled = np.zeros(2 * k, np.int64)
-        # Rays are launched only while every queue holds less than a batch, so this never overflows.
-        self.queues = np.empty((2 * k, fields, (2 * k + 1) * BATCH))
+        self.queues = np.empty((2 * k, fields, queue_capacity(2 * k)))
         work = np.empty((fields, BATCH))
         scratch = np.empty((N_SCRATCH, BATCH))
         steps = np.empty(BATCH, np.uint64)

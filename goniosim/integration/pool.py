@@ -40,5 +40,5 @@ class Pool(ThreadPoolExecutor):
             for start in starts:
                 work(start)
             return
-        for _ in self.map(several, range(self.threads)):
+        for _ in self.map(several, range(min(self.threads, len(starts)))):
             pass

@@ -78,6 +78,11 @@ def size(n_bytes):
     return f"{n_bytes} bytes"
 
 
+def counted(number, thing):
+    """Format a number of things: ``1 thread``, ``8 threads``."""
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
 def degrees(angle):
     """Format an angle in degrees without useless decimals: ``45``, ``89.99``."""
     return f"{angle:.10g}"

@@ -84,14 +84,24 @@ class Geometry:
     projected_solid_angle: np.ndarray
 
 
-@lru_cache(maxsize=128)
+# Cells of a slice that is kept: as many as usual. Finer ones would fill the memory.
+_KEPT_CELLS = 1 << 15
+
+
 def slice_geometry(parametrization, rows, columns, theta_deg):
     """Cells of the slice for light at ``theta_deg``; ``parametrization`` by name.
 
-    Kept for the next scene of a study: the arrays cannot be written to.
+    Kept for the next scene of a study, unless it is fine: the arrays cannot be written to.
     """
-    module = PARAMETRIZATIONS[parametrization][1]
-    arrays = module.geometry(rows, columns, math.radians(theta_deg))
+    find = _kept_geometry if rows * columns <= _KEPT_CELLS else _geometry
+    return find(parametrization, rows, columns, float(theta_deg))
+
+
+def _geometry(parametrization, rows, columns, theta_deg):
+    arrays = PARAMETRIZATIONS[parametrization][1].geometry(rows, columns, math.radians(theta_deg))
     for array in arrays:
         array.setflags(write=False)
     return Geometry(*arrays)
+
+
+_kept_geometry = lru_cache(maxsize=128)(_geometry)

@@ -17,10 +17,15 @@ from .._jit import scalar, stage
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
-# Gauss-Legendre nodes for a cell above the horizon, and for one that the horizon cuts; rows
-# higher than a ninetieth of the slice are divided into panels.
+# Gauss-Legendre nodes for a cell above the horizon, for a high one, and for one that the horizon cuts.
 _NODES = 10
+_NODES_HIGH = 32
 _NODES_CUT = 96
+# Rows are high if there are fewer than this. Of high cells that are cut, both ends, as high as a row of so many,
+# are panels of their own: there the horizon of grazing light turns.
+_ROWS = 90
+# Cells at a time, so that memory stays bounded on fine slices.
+_BLOCK = 1 << 16
 
 
 @stage
@@ -138,11 +143,20 @@ def geometry(rows, columns, theta):
     # The slice is its own mirror image: the first half of the columns tells the rest.
     edge_phi = np.linspace(0.0, 2.0 * math.pi, columns + 1)[: (columns + 1) // 2 + 1]
     shape = (rows, len(edge_phi) - 1)
-    low = np.broadcast_to(edge_theta[:-1, None], shape)
-    high = np.broadcast_to(edge_theta[1:, None], shape)
-    start = np.broadcast_to(edge_phi[:-1], shape)
-    end = np.broadcast_to(edge_phi[1:], shape)
+    valid = np.empty(rows * shape[1], bool)
+    solid = np.zeros(len(valid))
+    projected = np.zeros(len(valid))
+    for first in range(0, len(valid), _BLOCK):
+        block = slice(first, first + _BLOCK)
+        row, column = np.divmod(np.arange(first, min(first + _BLOCK, len(valid))), shape[1])
+        box = (edge_theta[row], edge_theta[row + 1], edge_phi[column], edge_phi[column + 1])
+        valid[block], solid[block], projected[block] = _integrate(*box, theta, _ROWS // rows)
+    mirrored = np.minimum(np.arange(columns), np.arange(columns)[::-1])
+    return tuple(half.reshape(shape)[:, mirrored] for half in (valid, solid, projected))
 
+
+def _integrate(low, high, start, end, theta, high_rows):
+    """Validity and solid angles of cells [low, high] x [start, end], ``high_rows`` times as high as usual."""
     # The height has no minimum inside a cell, and a maximum above the horizon only if a corner is
     # above it too; phi = 180 deg may lie inside the middle one of an odd number of columns.
     farthest = np.where((start < math.pi) & (end > math.pi), math.pi, start)
@@ -150,24 +164,28 @@ def geometry(rows, columns, theta):
     valid = np.min(heights, axis=0) >= 0.0
     cut = ~valid & (np.max(heights, axis=0) > 0.0)
 
-    # The horizon crosses the column edges at these theta_h: between them nothing has a kink.
-    crossings = [start, end] + ([np.full(shape, math.pi)] if columns % 2 else [])
+    # The horizon crosses the column edges, and the middle of the slice, at these theta_h: between them
+    # nothing has a kink.
+    crossings = [start, end, farthest] if (farthest > start).any() else [start, end]
     kinks = [np.clip(_horizon(phi, theta), low, high) for phi in crossings]
     bounds = np.sort(np.stack([low, *kinks, high]), axis=0)
-    solid = np.zeros(shape)
-    projected = np.zeros(shape)
-    panels = max(1, 90 // rows)
-    for a, b in zip(bounds[:-1], bounds[1:], strict=True):
-        for kind, nodes in ((valid, _NODES), (cut, _NODES_CUT)):
-            some = kind & (b > a)
-            low_edge, height = a[some], (b[some] - a[some]) / panels
-            for panel in range(panels):
-                bottom = low_edge + panel * height
-                d_solid, d_projected = _piece(bottom, bottom + height, start[some], end[some], theta, nodes)
-                solid[some] += d_solid
-                projected[some] += d_projected
-    mirrored = np.minimum(np.arange(columns), np.arange(columns)[::-1])
-    return valid[:, mirrored], solid[:, mirrored], projected[:, mirrored]
+    solid = np.zeros_like(low)
+    projected = np.zeros_like(low)
+    inner = [1.0 / high_rows, 1.0 - 1.0 / high_rows] if high_rows > 2 else [0.5] * (high_rows == 2)
+    for kind, shares, nodes in (
+        (valid, (0.0, 1.0), _NODES_HIGH if high_rows > 1 else _NODES),
+        (cut, (0.0, *inner, 1.0), _NODES_CUT),
+    ):
+        # What lies beyond the last kink of a cell that is cut is below the horizon.
+        for a, b in zip(bounds[:-1], bounds[1:] if kind is valid else bounds[1:-1], strict=False):
+            (some,) = np.nonzero(kind & (b > a))
+            if len(some) == 0:
+                continue
+            edges = a[some] + np.multiply.outer(shares, b[some] - a[some])
+            d_solid, d_projected = _piece(edges[:-1], edges[1:], start[some], end[some], theta, nodes)
+            solid[some] += d_solid.sum(axis=0)
+            projected[some] += d_projected.sum(axis=0)
+    return valid, solid, projected
 
 
 def _piece(a, b, start, end, theta, n_nodes):

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from scipy.stats import norm, t
 
+from goniosim.engine import memory_needed
 from goniosim.report.simulation import audit, cost, forecast, losses, study, summary
+from reference.scenes import lambert, make_scene
 from synthetic import make_result
 
 
@@ -134,7 +136,20 @@ def test_light_lost_at_the_event_cap_is_said_in_one_line(result, lost, said):
 
 
 def test_the_forecast_warns_of_the_event_cap():
-    one = forecast.Forecast("trap", 1, 1000, 1e6, 2.0, 0.0, 1000, probe_rays=80_000, lost_event_cap=0.05)
+    one = forecast.Forecast(
+        name="trap",
+        directions=1,
+        rays=1000,
+        rays_per_second=1e6,
+        events_per_ray=2.0,
+        compile_seconds=0.0,
+        n_bytes=1000,
+        threads=1,
+        memory=memory_needed(make_scene([lambert(0.5)], 0.0)),
+        shortage=None,
+        probe_rays=80_000,
+        lost_event_cap=0.05,
+    )
     (line,) = [line for line in forecast.cost_text([one]).splitlines() if "event cap" in line]
     assert "trap" in line and "8e4 rays of the probe" in line and "5 %" in line
     lossless = dataclasses.replace(one, lost_event_cap=0.9e-3)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from goniosim.slices import PARAMETRIZATIONS, cells_of, slice_geometry
+from goniosim.slices import PARAMETRIZATIONS, cells_of, half, slice_geometry
 
 
 def _cells(name, directions, theta_deg, rows=90, columns=360):
@@ -105,3 +105,39 @@ def test_valid_half_cells_lie_above_the_horizon(theta):
             h = _direction(t, p)
             height = 2 * (h @ light) * h[..., 2] - light[2]
             assert valid[row, column] == (height.min() > -1e-12)
+
+
+def _reduced(fine, rows, columns):
+    return fine.reshape(rows, fine.shape[0] // rows, columns, fine.shape[1] // columns).sum(axis=(1, 3))
+
+
+@pytest.mark.parametrize("theta", [0.0, 37.0, 89.9])
+@pytest.mark.parametrize("shape", [(1, 1), (1, 4), (2, 2), (6, 1), (30, 3), (40, 8)])
+def test_coarse_half_slices_hold_what_fine_ones_do(shape, theta):
+    coarse = slice_geometry("half", *shape, theta)
+    # Rows u: those of 120 rows lie within them.
+    fine = slice_geometry("half", 120, 24, theta)
+    for name in ("solid_angle", "projected_solid_angle"):
+        np.testing.assert_allclose(getattr(coarse, name), _reduced(getattr(fine, name), *shape), rtol=0, atol=2e-13)
+    assert coarse.projected_solid_angle.sum() == pytest.approx(math.pi, abs=1e-12)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 50), (9, 1), (2, 2)])
+def test_coarse_half_slices_take_few_evaluations(monkeypatch, shape):
+    calls = []
+    ring = half._ring
+    monkeypatch.setattr(half, "_ring", lambda *arguments: calls.append(1) or ring(*arguments))
+    half.geometry(*shape, math.radians(60.0))
+    assert len(calls) < 500
+
+
+def test_cells_in_blocks_are_the_cells(monkeypatch):
+    whole = half.geometry(20, 31, 1.0)
+    monkeypatch.setattr(half, "_BLOCK", 100)
+    for one, other in zip(whole, half.geometry(20, 31, 1.0), strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_fine_slices_are_not_kept():
+    assert slice_geometry("classic", 90, 360, 1.0) is slice_geometry("classic", 90, 360, 1.0)
+    assert slice_geometry("classic", 300, 300, 1.0) is not slice_geometry("classic", 300, 300, 1.0)

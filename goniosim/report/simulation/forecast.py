@@ -1,6 +1,6 @@
 """What a simulation will do and cost, before it is run."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from .. import text
 from .losses import NOTEWORTHY_CAP, cap_remedy
@@ -26,6 +26,11 @@ class Forecast:
         Time that compilation, or loading from the cache, took.
     n_bytes : int
         Upper estimate of the size of the result file.
+    threads : int
+    memory : goniosim.engine.memory.Memory
+        Upper estimate of what is held in memory.
+    shortage : str or None
+        What is missing if that is more than is free here.
     probe_rays : int
         Rays of the probe, all directions together.
     lost_event_cap : float
@@ -39,6 +44,9 @@ class Forecast:
     events_per_ray: float
     compile_seconds: float
     n_bytes: int
+    threads: int
+    memory: object
+    shortage: str | None
     probe_rays: int
     lost_event_cap: float
 
@@ -67,7 +75,7 @@ def file_size(scene):
 
     names = components(scene)
     orders = (scene.simulation.orders or 0) * (len(names) - 1)
-    return predicted_size(
+    arrays = predicted_size(
         len(scene.incident.theta_deg),
         3,
         scene.slice.rows,
@@ -76,6 +84,7 @@ def file_size(scene):
         orders,
         scene.slice.parametrization,
     )
+    return arrays + len(scene.to_yaml().encode())
 
 
 def forecasts(scenes):
@@ -89,11 +98,14 @@ def forecasts(scenes):
     -------
     list of Forecast
     """
-    from goniosim.engine import probe
+    from goniosim.engine import memory_needed, probe, shortage, threads_of
 
     made = []
     for scene in scenes:
-        measured = probe(scene, seconds=min(PROBE, PROBE_STUDY / len(scenes)))
+        short = shortage(scene)
+        # What does not fit here may run elsewhere: its speed is that on slices of the usual size.
+        tried = _usual_slices(scene) if short else scene
+        measured = probe(tried, seconds=min(PROBE, PROBE_STUDY / len(scenes)))
         made.append(
             Forecast(
                 name=scene.material.name,
@@ -103,11 +115,20 @@ def forecasts(scenes):
                 events_per_ray=measured.events_per_ray,
                 compile_seconds=measured.compile_seconds,
                 n_bytes=file_size(scene),
+                threads=threads_of(scene),
+                memory=memory_needed(scene),
+                shortage=short,
                 probe_rays=measured.rays,
                 lost_event_cap=measured.lost_event_cap,
             )
         )
     return made
+
+
+def _usual_slices(scene):
+    simulation = scene.simulation.model_copy(update={"orders": None})
+    usual = type(scene.slice)(parametrization=scene.slice.parametrization)
+    return scene.model_copy(update={"slice": usual, "simulation": simulation})
 
 
 def effects_text(scene):
@@ -137,9 +158,11 @@ def cost_text(made):
             f"  speed       {text.rate(one.rays_per_second)}, {one.events_per_ray:.1f} events per ray",
             f"  time        {text.duration(one.seconds)} for {one.directions} x {text.count(one.rays)} rays",
             f"  file size   at most {text.size(one.n_bytes)}",
+            f"  memory      at most {text.size(one.memory.peak)} on {text.counted(one.threads, 'thread')}: "
+            + ", ".join(f"{name} {text.size(n_bytes)}" for name, n_bytes in _largest(one.memory)),
         ]
     else:
-        header = ["material", "rays", "speed", "time", "file at most"]
+        header = ["material", "rays", "speed", "time", "file at most", "memory"]
         rows = [
             [
                 one.name,
@@ -147,19 +170,30 @@ def cost_text(made):
                 text.rate(one.rays_per_second),
                 text.duration(one.seconds),
                 text.size(one.n_bytes),
+                text.size(one.memory.peak),
             ]
             for one in made
         ]
         seconds, n_bytes = sum(one.seconds for one in made), sum(one.n_bytes for one in made)
+        peak = max(one.memory.peak for one in made)
         lines = [
             f"{len(made)} materials, all valid; speeds from short probes",
             *text.table(header, rows),
-            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)}.",
+            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)} on disk and, at a time, "
+            f"{text.size(peak)} of memory.",
         ]
     lines += [_event_cap(one) for one in made if one.lost_event_cap >= NOTEWORTHY_CAP]
+    lines += [f"  Warning: memory: {one.name} does not fit here: {one.shortage}" for one in made if one.shortage]
     if compilation > 1.0:
         lines.append(f"  Compilation took {text.duration(compilation)}; it is kept for the next run.")
     return "\n".join(lines)
+
+
+def _largest(memory):
+    """The two parts of the peak that take most, besides the program."""
+    phase = max(memory.phases, key=lambda names: sum(getattr(memory, name) for name in names))
+    parts = sorted(((getattr(memory, name), name) for name in phase[1:]), reverse=True)
+    return [(name, n_bytes) for n_bytes, name in parts[:2]]
 
 
 def _event_cap(one):
@@ -168,6 +202,52 @@ def _event_cap(one):
         f"  Warning: event cap: {one.name} traps light between interfaces; of the {text.count(one.probe_rays)} rays of "
         f"the probe up to {100.0 * one.lost_event_cap:.2g} % were cut and lost; {cap_remedy(one.rays)}"
     )
+
+
+def as_dict(scene, one):
+    """What `check` says of a material, for programs: plain numbers in base units.
+
+    Parameters
+    ----------
+    scene : Scene
+    one : Forecast
+
+    Returns
+    -------
+    dict
+    """
+    from goniosim.scene import absent_interfaces, effects
+
+    return {
+        "name": one.name,
+        "directions": one.directions,
+        "rays": one.rays,
+        "threads": one.threads,
+        "seconds": one.seconds,
+        "rays_per_second": one.rays_per_second,
+        "events_per_ray": one.events_per_ray,
+        "compile_seconds": one.compile_seconds,
+        "file_bytes": one.n_bytes,
+        "memory_bytes": one.memory.peak,
+        "memory": asdict(one.memory),
+        "memory_shortage": one.shortage,
+        "effects": {effect.name: {"active": effect.active, "why": effect.why} for effect in effects(scene)},
+        "absent_interfaces": absent_interfaces(scene),
+        "probe_rays": one.probe_rays,
+        "lost_event_cap": one.lost_event_cap,
+    }
+
+
+def study_as_dict(name, scenes, made):
+    """What `check` says of a study, for programs: totals, and the peak of memory, which is not a sum."""
+    materials = [as_dict(scene, one) for scene, one in zip(scenes, made, strict=True)]
+    totals = {key: sum(each[key] for each in materials) for key in ("seconds", "compile_seconds", "file_bytes")}
+    return {
+        "name": name,
+        **totals,
+        "memory_bytes": max(each["memory_bytes"] for each in materials),
+        "materials": materials,
+    }
 
 
 def _heading(scene):

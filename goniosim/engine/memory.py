@@ -1,0 +1,237 @@
+"""How much memory a simulation takes, told from the shapes of its arrays before any is made.
+
+The peak comes in one of three phases: while rays are traced, when the tallies become a result, or
+when the result becomes a file.
+"""
+
+from dataclasses import dataclass, replace
+
+from ..cores import available_cores
+from ..errors import ResourceError
+from ..free_memory import free_memory, resident_memory
+from .layout import DOWN, N_LEDGER, N_SCRATCH, UP, WEIGHT
+from .plan import make_plan
+from .schedule import MOST_LEDGERS, Schedule, units_in_flight
+from .tally import record_length
+from .unit import BATCH, PARTS, queue_capacity
+
+# Bytes of a number.
+_NUMBER = 8
+# Measured: the interpreter, the libraries and the kernels, with the compiler of a first run; and the parts of
+# cells in work while the direct reflection is integrated.
+_PROGRAM = 300_000_000
+# Of a thread, besides its arrays.
+_THREAD = 1_000_000
+# Python's objects around a ledger.
+_LEDGER = 200
+# Size of a file, relative to the arrays in it; while it is made, it exists twice.
+_WRITTEN = 2 * 0.9
+
+
+@dataclass(frozen=True)
+class Memory:
+    """Bytes of memory by what holds them.
+
+    Attributes
+    ----------
+    program : int
+        The interpreter, the libraries, the compiled code.
+    cells : int
+        Geometry of the cells.
+    direct : int
+        Direct reflection on all cells.
+    tallies : int
+        Sums over the work units of all directions.
+    threads : int
+        Tallies of the work units in flight.
+    queues : int
+        Rays in the queues of the interfaces, of all threads.
+    audit : int
+        Energy balances of the parts of the work units.
+    result : int
+        The finished result.
+    file : int
+        The file while it is written.
+    scratch : int
+        What passes by while tallies become slices.
+    """
+
+    program: int
+    cells: int
+    direct: int
+    tallies: int
+    threads: int
+    queues: int
+    audit: int
+    result: int
+    file: int
+    scratch: int
+
+    @property
+    def phases(self):
+        """Names of what is held at the same time, for every phase."""
+        held = ("program", "cells", "direct", "tallies", "audit", "scratch")
+        return (*held, "threads", "queues"), (*held, "result"), ("program", "result", "file")
+
+    @property
+    def peak(self):
+        """Bytes when most is held."""
+        return max(sum(getattr(self, name) for name in phase) for phase in self.phases)
+
+    @property
+    def largest(self):
+        """Name of what takes most of the peak, besides the program."""
+        phase = max(self.phases, key=lambda names: sum(getattr(self, name) for name in names))
+        return max(phase[1:], key=lambda name: getattr(self, name))
+
+
+def memory_needed(scene):
+    """Predict what the simulation of a scene will hold.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene
+
+    Returns
+    -------
+    Memory
+        An upper estimate: all cells are taken to be hit.
+    """
+    return _needed(make_plan(scene), scene.simulation.rays, threads_of(scene))
+
+
+def threads_of(scene):
+    """Threads that a scene is simulated on."""
+    return scene.simulation.threads or available_cores()
+
+
+def _needed(plan, rays, threads):
+    directions, distinct, channels = len(plan.theta_deg), plan.n_distinct, len(plan.position)
+    cells = plan.rows * plan.columns
+    record = record_length(distinct)
+    tally = plan.n_slots * cells * record * _NUMBER
+    schedule = Schedule(directions, rays)
+    threads = min(threads, len(schedule))
+    ledgers = min(PARTS * schedule.rounds, 2 * MOST_LEDGERS)
+    # A slice for each way out, and one for each order.
+    counts = [int(plan.slots[side, 1]) for side in (UP, DOWN)]
+    sampled = sum((1 + count if plan.orders else 1) for count in counts if count)
+    slices = (1 + sampled) * 4 * channels + sampled
+    # Two numbers and a flag.
+    geometry = 2 * _NUMBER + 1
+    return Memory(
+        program=_PROGRAM,
+        cells=directions * cells * geometry,
+        direct=directions * 2 * distinct * cells * _NUMBER,
+        tallies=directions * tally,
+        threads=units_in_flight(schedule, threads) * tally + threads * _THREAD,
+        queues=threads * _queues(plan) + 2 * directions * _thresholds(plan),
+        # The balance of one direction needs three copies of its ledgers.
+        audit=(directions + 3) * ledgers * (N_LEDGER * distinct * _NUMBER + _LEDGER),
+        result=directions * cells * (slices * _NUMBER + geometry),
+        file=int(_WRITTEN * directions * cells * (slices * _NUMBER + geometry)),
+        scratch=cells * (record + 8 * distinct) * _NUMBER,
+    )
+
+
+def _queues(plan):
+    """Bytes of a `unit.Workspace`."""
+    queues = 2 * len(plan.kinds)
+    fields = WEIGHT + plan.n_distinct + (1 if plan.orders else 0)
+    rays = queues * queue_capacity(queues) + 5 * BATCH
+    return (fields * rays + N_SCRATCH * BATCH) * _NUMBER + len(plan.theta_deg) * _thresholds(plan)
+
+
+def _thresholds(plan):
+    """Bytes of the `faint.faint_weights` of one direction."""
+    return 2 * len(plan.kinds) * plan.n_distinct * _NUMBER
+
+
+def require_memory(scene):
+    """Make sure that the simulation of a scene fits into the memory that is free.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene
+
+    Raises
+    ------
+    ResourceError
+        With the numbers, and what would help.
+    """
+    if short := shortage(scene):
+        raise ResourceError(f"{scene.material.name}: not enough memory: {short}")
+
+
+def shortage(scene):
+    """Say what is missing for the simulation of a scene, and what would help.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene
+
+    Returns
+    -------
+    str or None
+        None if it fits, or if nothing is known of the memory.
+    """
+    free = free_memory()
+    if free is None:
+        return None
+    # What this process holds already is part of the need.
+    room = free[0] + resident_memory()
+    plan, rays, threads = make_plan(scene), scene.simulation.rays, threads_of(scene)
+    needed = _needed(plan, rays, threads)
+    if needed.peak <= room:
+        return None
+    return (
+        f"about {needed.peak / 1e9:.3g} GB are needed, most of them for {_PURPOSE[needed.largest]}, and "
+        f"{room / 1e9:.3g} GB can be had ({free[1]}); {_remedy(plan, rays, threads, room)}"
+    )
+
+
+_PURPOSE = {
+    "cells": "the geometry of the cells",
+    "direct": "the direct reflection of all directions",
+    "tallies": "the tallies of all directions",
+    "threads": "the tallies of the threads",
+    "queues": "the queues of the interfaces",
+    "audit": "the energy balances of the work units",
+    "result": "the result",
+    "file": "the file while it is written",
+    "scratch": "sums of tallies",
+}
+
+
+def _remedy(plan, rays, threads, room):
+    """The smallest change that makes the simulation fit: of the threads, the directions or the cells."""
+    if fewer := _most(lambda n: _needed(plan, rays, n).peak <= room, threads - 1):
+        return f"{_counted(fewer, 'thread')} would fit (--threads {fewer})"
+    also = "with --threads 1, " if threads > 1 else ""
+    orders = ", or fewer orders (simulation.orders)" if plan.orders else ""
+
+    def fits(**changes):
+        return _needed(replace(plan, **changes), rays, 1).peak <= room
+
+    if most := _most(lambda n: fits(theta_deg=plan.theta_deg[:n]), len(plan.theta_deg) - 1):
+        return f"{also}{_counted(most, 'incident direction')} per file would fit{orders}"
+    for halvings in range(1, max(plan.rows, plan.columns).bit_length()):
+        rows, columns = max(1, plan.rows >> halvings), max(1, plan.columns >> halvings)
+        if fits(rows=rows, columns=columns):
+            return f"{also}slices of {rows} x {columns} cells would fit (slice.rows, slice.columns){orders}"
+    if _needed(plan, rays, 1).largest == "queues":
+        return f"{also}give the stack fewer interfaces, or use a machine with more memory"
+    return "close other programs, or use a machine with more memory"
+
+
+def _counted(number, thing):
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
+def _most(fits, n):
+    """Largest number up to ``n`` for which ``fits`` holds, 0 if none; it holds for all below the largest."""
+    low, high = 0, n
+    while low < high:
+        middle = (low + high + 1) // 2
+        low, high = (middle, high) if fits(middle) else (low, middle - 1)
+    return low
