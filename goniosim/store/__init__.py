@@ -1,5 +1,6 @@
 """Result files: the one place that knows HDF5. `data_schema.md` describes the format."""
 
+from goniosim.store.datatree import to_datatree
 from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_be_models_file, open_models
 from goniosim.store.output import Reservation, reserve_output
 from goniosim.store.reader import open_result, read_header
@@ -17,5 +18,6 @@ __all__ = [
     "predicted_size",
     "read_header",
     "reserve_output",
+    "to_datatree",
     "write_result",
 ]

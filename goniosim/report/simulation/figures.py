@@ -1,11 +1,38 @@
 """Figures of a result: an overview, and one for each incident direction."""
 
+from matplotlib import rc_context
+
 from ...writing import make_folder
 from .. import text
 from ..drawing import directions
-from ..drawing.files import write_figure
+from ..drawing.files import STYLE, write_figure
 from .direction import direction_figure
 from .overview import overview_figure
+
+
+def figure(result, theta_deg=None):
+    """Draw one figure of a result.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+    theta_deg : float, optional
+        The direction; without it, the overview.
+
+    Returns
+    -------
+    goniosim.report.drawing.picture.Picture
+
+    Raises
+    ------
+    UnusableResultError
+        If the angle was not simulated.
+    """
+    with rc_context(STYLE):
+        if theta_deg is None:
+            return overview_figure(result)
+        (i,) = directions.chosen(result.theta_deg, [float(theta_deg)])
+        return direction_figure(result, i)
 
 
 def draw(result, folder, stem, *, suffix="png", theta_deg=None):
