@@ -35,12 +35,12 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study
     from goniosim.report.simulation.summary import summary
-    from goniosim.scene import is_study, load_scenes, study_name
+    from goniosim.scene import Override, is_study, load_scenes, study_name
 
     from . import jobs
 
-    given = {"rays": rays, "seed": seed, "threads": threads}
-    options = [f"simulation.{name}={value}" for name, value in given.items() if value is not None]
+    given = {name: value for name, value in (("rays", rays), ("seed", seed), ("threads", threads)) if value is not None}
+    options = [Override(f"simulation.{name}={value}", f"--{name} {value}") for name, value in given.items()]
     scenes = load_scenes(config, [*overrides, *options])
     many = is_study(config)
     planned = jobs.plan(scenes, output, folder=Path(output or study_name(config)) if many else None)

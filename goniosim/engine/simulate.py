@@ -12,7 +12,7 @@ from ..errors import StoppedError
 from ..integration import Pool
 from ..provenance import provenance
 from ..result import Cost, Result
-from ..scene import CHANNELS, effects, parse_scene
+from ..scene import CHANNELS, effects, with_arguments
 from . import estimate
 from .direct import direct_reflection
 from .faint import faint_weights
@@ -47,14 +47,11 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     Raises
     ------
     goniosim.errors.ConfigError
-        If an override is out of range.
+        If ``rays``, ``seed`` or ``threads`` is out of range.
     goniosim.errors.StoppedError
         If it was stopped before any work unit was finished.
     """
-    wanted = {"rays": rays, "seed": seed, "threads": threads}
-    overrides = [f"simulation.{key}={value}" for key, value in wanted.items() if value is not None]
-    if overrides:
-        scene = parse_scene(scene.to_yaml(), overrides=overrides)
+    scene = with_arguments(scene, {"rays": rays, "seed": seed, "threads": threads})
     threads = scene.simulation.threads or available_cores()
     plan = make_plan(scene)
     run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)

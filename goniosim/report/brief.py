@@ -12,11 +12,11 @@ def result(result):
     """Name, status, directions, slices, rays, and the mean albedo of each component."""
     albedos = ", ".join(f"{name} {_mean_albedo(result, name)}" for name in result.components)
     lines = [
-        f"Result {result.name} ({result.status})",
+        f"<Result {result.name} ({result.status})",
         f"incident theta [deg]: {angles(result.theta_deg)}",
         f"{_grid(result.cells)}, channels {', '.join(result.channels)}",
         f"rays per direction: {text.counts(result.rays)}, seed {result.seed}",
-        f"mean albedo: {albedos}",
+        f"mean albedo: {albedos}>",
     ]
     return "\n  ".join(lines)
 

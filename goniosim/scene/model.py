@@ -15,6 +15,8 @@ from goniosim.scene.structure import structure_mistakes
 
 MAX_CELLS = 4_000_000
 MAX_DIRECTIONS = 1000
+# More layers or angles are counted by a short text, not listed.
+MOST_SHOWN = 10
 
 Theta = Number(0.0, 90.0, "be 0 or more and below 90: it is the angle from the normal in degrees", open_high=True)
 CellCount = Number(1, MAX_CELLS, "be a whole number from 1 to 4e6", integer=True)
@@ -167,6 +169,21 @@ class Scene(Part):
     incident: Incident
     slice: Slice = Slice()
     simulation: Simulation = Simulation()
+
+    def __repr__(self) -> str:
+        layers = [layer.interface.type if layer.interface else "medium" for layer in self.material.layers]
+        angles = [f"{theta:.10g}" for theta in self.incident.theta_deg]
+        rays = f"{self.simulation.rays:.4g}".replace("e+0", "e").replace("e+", "e")
+        parts = [
+            ", ".join(layers) if len(layers) <= MOST_SHOWN else f"{len(layers)} layers",
+            f"theta_deg {', '.join(angles)}" if len(angles) <= MOST_SHOWN else f"{len(angles)} directions",
+            f"{self.slice.parametrization} slices of {self.slice.rows} x {self.slice.columns} cells",
+            f"{rays} rays",
+            f"seed {self.simulation.seed}",
+        ]
+        return f"<Scene {self.material.name}: {'; '.join(parts)}>"
+
+    __str__ = __repr__
 
     def to_yaml(self) -> str:
         """Write the scene as YAML, complete with its defaults.
