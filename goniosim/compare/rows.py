@@ -73,6 +73,19 @@ def material_rows(comparison):
     return rows
 
 
+def label(row):
+    """Label of the variant of a row: the model, with its options in brackets."""
+    return f"{row['model']}[{row['options']}]" if row["options"] else row["model"]
+
+
+def error(row):
+    """RMSE of a row with its standard error, in a few words."""
+    if row["below_noise"]:
+        return f"below noise, < {row['rmse_upper']:.2g}"
+    text = f"{row['rmse']:.3g} ± {row['rmse_stderr']:.1g}"
+    return text if row["converged"] else f"{text} ({row['subcells']} x {row['subcells']} sub-cells too coarse)"
+
+
 def _row(comparison, found, direction, channel):
     result, measures = comparison.result, found.measures
     error = rmse(measures, direction, channel)
