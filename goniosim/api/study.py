@@ -24,6 +24,7 @@ def simulate_study(
     study: Study,
     *,
     folder: None = None,
+    overwrite: bool = False,
     rays: float | None = None,
     seed: float | None = None,
     threads: int | None = None,
@@ -37,6 +38,7 @@ def simulate_study(
     study: Study,
     *,
     folder: StrPath,
+    overwrite: bool = False,
     rays: float | None = None,
     seed: float | None = None,
     threads: int | None = None,
@@ -49,6 +51,7 @@ def simulate_study(
     study: Study,
     *,
     folder: StrPath | None = None,
+    overwrite: bool = False,
     rays: float | None = None,
     seed: float | None = None,
     threads: int | None = None,
@@ -68,6 +71,8 @@ def simulate_study(
     folder : path-like, optional
         Write each result into ``NAME.h5`` there as soon as it is done, instead of keeping all in memory.
         Files that hold the complete result of just their scene are left alone: calling again goes on.
+    overwrite : bool
+        Leave no file alone: simulate all anew, and replace whatever results stand there.
     rays, seed, threads, progress, stop
         As for `simulate`, and for all materials; progress is that of the whole study.
 
@@ -105,12 +110,13 @@ def simulate_study(
         return results
     paths = {scene.material.name: Path(folder) / f"{scene.material.name}.h5" for scene in scenes}
     make_folder(folder)
-    files = {scene.material.name: paths[scene.material.name] for scene in scenes if _is_finished(scene, paths)}
+    finished = [] if overwrite else [scene.material.name for scene in scenes if _is_finished(scene, paths)]
+    files = {name: paths[name] for name in finished}
     todo = [scene for scene in scenes if scene.material.name not in files]
     for scene in todo:
         # Room is kept only for the material at work.
         reserve_output(paths[scene.material.name], 0).release()
-    _run(todo, partial(_into_file, paths), files, progress, stop)
+    _run(todo, partial(_into_file, paths, overwrite), files, progress, stop)
     return {name: files[name] for name in paths if name in files}
 
 
@@ -138,12 +144,13 @@ def _run(
                 return
 
 
-def _into_file(paths: Mapping[str, Path], scene: Scene, label: str, shown: Any, asked: Stop) -> Path:
+def _into_file(paths: Mapping[str, Path], overwrite: bool, scene: Scene, label: str, shown: Any, asked: Stop) -> Path:
     from ..report.simulation.forecast import file_size
 
     path = paths[scene.material.name]
     with reserve_output(path, file_size(scene)) as reservation:
-        write_result(trace(scene, label, shown, asked), path, reservation=reservation)
+        result = trace(scene, label, shown, asked)
+        write_result(result, path, overwrite=overwrite, reservation=reservation)
     return path
 
 

@@ -120,11 +120,10 @@ def compare(
     >>> comparison
     <Comparison with 1 material: RMSE [sr^-1/2] over all directions, mean over the channels
       coated, reflection/internal
-        ww09                                0...
-        bati19_ww                           ...
-        bati19_ww[refraction_scale=paper]   ...>
+        ww09       0.0964 ± 0.0013
+        bati19_ww  0.0458 ± 0.0016>
     >>> [row["model"] for row in comparison.rows(theta_deg=60)]
-    ['ww09', 'bati19_ww', 'bati19_ww']
+    ['ww09', 'bati19_ww']
     """
     request = check_request([models] if isinstance(models, str) else models, options)
     check_subcells(subcells)

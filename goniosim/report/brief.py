@@ -71,6 +71,8 @@ def _grid(cells):
 
 
 def _mean_albedo(result, name):
+    if not result.rays.any():
+        return "not traced"
     value, stderr = (array[result.rays > 0] for array in result.albedo(name))
     # Directions are independent; channels share their paths.
     error = np.sqrt((stderr**2).sum(axis=0)).mean() / len(stderr)

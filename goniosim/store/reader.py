@@ -39,6 +39,11 @@ def open_result(path: StrPath) -> Result:
         If its major schema version is newer than this goniosim reads.
     UnusableResultError
         If it is a file of integrated models: `goniosim.store.open_models` reads those.
+
+    Examples
+    --------
+    >>> goniosim.open_result("result.h5").status
+    'complete'
     """
     with userblock.open_regular(path) as stream:
         block = _user_block(stream, path)
@@ -82,7 +87,7 @@ def _user_block(stream: BinaryIO, path: StrPath) -> userblock.UserBlock:
     except ForeignFileError:
         if is_models_file(path):
             raise UnusableResultError(
-                f"{path}: holds integrated models and no simulation; name a file that `goniosim simulate` wrote "
+                f"{path}: holds integrated models and no simulation; name a file that a simulation wrote "
                 "(`goniosim info`, `goniosim plot` and goniosim.store.open_models take this one)"
             ) from None
         raise
