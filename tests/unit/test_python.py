@@ -254,9 +254,3 @@ def test_arguments_of_comparisons_are_checked():
     for angles in (["a", 0, 0], [[1, 2], [1, 2, 3], 0], [None, 0, 0]):
         with pytest.raises(ConfigError, match="theta_i_deg, theta_o_deg and phi_o_deg must be numbers|below 90"):
             goniosim.evaluate_model("ww09", SCENE, *angles)
-
-
-def test_the_public_names_are_there():
-    assert all(getattr(goniosim, name) is not None for name in goniosim.__all__)
-    assert goniosim.errors.ConfigError is ConfigError
-    assert issubclass(ConfigError, goniosim.GoniosimError)
