@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from ..result import Audit, Cells, Component, Cost, Result
 from . import text
 
 # Of more angles, the first and the last few stand for all.
 MOST_ANGLES = 10
 
 
-def result(result):
+def result(result: Result) -> str:
     """Name, status, directions, slices, rays, and the mean albedo of each component."""
     albedos = ", ".join(f"{name} {_mean_albedo(result, name)}" for name in result.components)
     lines = [
@@ -21,7 +22,7 @@ def result(result):
     return "\n  ".join(lines)
 
 
-def component(component):
+def component(component: Component) -> str:
     """Shape, mean albedo and kind of a component."""
     directions, channels, rows, columns = component.energy.shape
     albedo = component.energy.sum() / (directions * channels)
@@ -35,20 +36,20 @@ def component(component):
     return f"<Component: {', '.join(parts)}>"
 
 
-def cells(cells):
+def cells(cells: Cells) -> str:
     """Parametrization, size and how many cells are valid."""
     valid = "all valid" if cells.valid.all() else f"{100.0 * cells.valid.mean():.3g} % of them valid"
     return f"<Cells: {_grid(cells)}, {valid}>"
 
 
-def audit(audit):
+def audit(audit: Audit) -> str:
     """Where the energy went, mean over directions and channels."""
     energies = {name: float(np.mean(energy)) for name, energy in audit.energy.items()}
     shown = ", ".join(f"{name} {energy:.3g}" for name, energy in energies.items() if energy)
     return f"<Audit, mean shares of the incident energy: {shown or 'nothing was traced'}>"
 
 
-def cost(cost):
+def cost(cost: Cost) -> str:
     """Rays, time and noise at the last checkpoint."""
     if not len(cost.rays):
         return "<Cost: no checkpoints>"
@@ -56,7 +57,7 @@ def cost(cost):
     return f"<Cost: {text.count(cost.rays[-1])} rays per direction in {text.duration(cost.seconds[-1])}{noise}>"
 
 
-def angles(theta_deg):
+def angles(theta_deg: np.ndarray) -> str:
     """Format angles in degrees, many of them by the first and the last few."""
     shown = [text.degrees(theta) for theta in theta_deg]
     if len(shown) > MOST_ANGLES:
@@ -65,12 +66,12 @@ def angles(theta_deg):
     return ", ".join(shown)
 
 
-def _grid(cells):
+def _grid(cells: Cells) -> str:
     rows, columns = len(cells.row_edges) - 1, len(cells.column_edges) - 1
     return f"{cells.parametrization} slices of {rows} x {columns} cells"
 
 
-def _mean_albedo(result, name):
+def _mean_albedo(result: Result, name: str) -> str:
     if not result.rays.any():
         return "not traced"
     value, stderr = (array[result.rays > 0] for array in result.albedo(name))
