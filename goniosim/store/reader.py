@@ -87,7 +87,7 @@ def _user_block(stream: BinaryIO, path: StrPath) -> userblock.UserBlock:
     except ForeignFileError:
         if is_models_file(path):
             raise UnusableResultError(
-                f"{path}: holds integrated models and no simulation; name a file that a simulation wrote "
+                f"{path}: holds integrated models and no simulation; name a file that `goniosim simulate` wrote "
                 "(`goniosim info`, `goniosim plot` and goniosim.store.open_models take this one)"
             ) from None
         raise

@@ -181,7 +181,7 @@ def _no_magic(block: bytes, path: StrPath) -> GoniosimError:
     if MAGIC.startswith(block):
         return DamagedFileError(f"{path}: is cut off after {len(block)} bytes; {REMEDY}")
     kind = "an HDF5 file, but " if block.startswith(_HDF5_SIGNATURE) else ""
-    return ForeignFileError(f"{path}: is {kind}not a goniosim result; name a file that a simulation wrote")
+    return ForeignFileError(f"{path}: is {kind}not a goniosim result; name a file that `goniosim simulate` wrote")
 
 
 def verify(stream: io.BufferedReader, block: UserBlock, path: StrPath) -> None:

@@ -171,4 +171,6 @@ def _filetype(path: StrPath) -> object:
 
 
 def _foreign(path: StrPath) -> ForeignFileError:
-    return ForeignFileError(f"{path}: is not a file of integrated models; name a models.h5 that a comparison wrote")
+    return ForeignFileError(
+        f"{path}: is not a file of integrated models; name a models.h5 that `goniosim compare` wrote"
+    )
