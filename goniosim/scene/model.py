@@ -15,8 +15,6 @@ from goniosim.scene.structure import structure_mistakes
 
 MAX_CELLS = 4_000_000
 MAX_DIRECTIONS = 1000
-# More layers or angles are counted by a short text, not listed.
-MOST_SHOWN = 10
 
 Theta = Number(0.0, 90.0, "be 0 or more and below 90: it is the angle from the normal in degrees", open_high=True)
 CellCount = Number(1, MAX_CELLS, "be a whole number from 1 to 4e6", integer=True)
@@ -24,6 +22,9 @@ Rays = Number(100, 10**15, "be a whole number from 100 to 1e15, such as 1e7", in
 Seed = Number(0, 2**63 - 1, "be a whole number from 0 to 2^63 - 1", integer=True)
 Orders = Number(1, 16, "be a whole number from 1 to 16; leave it out for no decomposition", integer=True)
 Threads = Number(1, 4096, "be a whole number from 1 to 4096; leave it out to use every core", integer=True)
+
+# More layers or angles are counted by a short text, not listed.
+MOST_SHOWN = 10
 
 
 class FileName(Checked):

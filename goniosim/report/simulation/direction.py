@@ -3,7 +3,7 @@
 from .. import text
 from ..drawing import bands, inplane, legend, panels, tone, view
 from ..drawing.disks import Board
-from ..drawing.picture import Picture
+from ..drawing.figure import Figure
 
 PIXELS = 600
 
@@ -35,7 +35,7 @@ def direction_figure(result, i):
     """
     theta_deg = float(result.theta_deg[i])
     numbers = view.disk(result.cells, i, theta_deg, PIXELS)
-    figure = Picture(figsize=(WIDTH, HEADER + ROW * len(result.components)))
+    figure = Figure(figsize=(WIDTH, HEADER + ROW * len(result.components)))
     title = f"{result.name},  light at {text.degrees(theta_deg)}°"
     legend.title(figure, title)
     board = Board(figure)

@@ -1,11 +1,10 @@
 """Figures of a result: an overview, and one for each incident direction."""
 
-from matplotlib import rc_context
-
 from ...writing import make_folder
 from .. import text
 from ..drawing import directions
-from ..drawing.files import STYLE, write_figure
+from ..drawing.figure import styled
+from ..drawing.files import write_figure
 from .direction import direction_figure
 from .overview import overview_figure
 
@@ -21,18 +20,17 @@ def figure(result, theta_deg=None):
 
     Returns
     -------
-    goniosim.report.drawing.picture.Picture
+    goniosim.report.drawing.figure.Figure
 
     Raises
     ------
     UnusableResultError
         If the angle was not simulated.
     """
-    with rc_context(STYLE):
-        if theta_deg is None:
-            return overview_figure(result)
-        (i,) = directions.chosen(result.theta_deg, [float(theta_deg)])
-        return direction_figure(result, i)
+    if theta_deg is None:
+        return styled(overview_figure, result)
+    (i,) = directions.chosen(result.theta_deg, [float(theta_deg)])
+    return styled(direction_figure, result, i)
 
 
 def draw(result, folder, stem, *, suffix="png", theta_deg=None):

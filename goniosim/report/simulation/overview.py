@@ -5,7 +5,7 @@ import numpy as np
 from ...result import Component
 from .. import text
 from ..drawing import directions, disks, inplane, legend, panels, tone, view
-from ..drawing.picture import Picture
+from ..drawing.figure import Figure
 
 PIXELS = 400
 
@@ -36,7 +36,7 @@ def overview_figure(result):
     shown = directions.spread(n, MOST)
     sides = [side for side in TITLES if any(name.startswith(side) for name in result.components)]
     width = max(LEFT + COLUMN * len(shown), NARROWEST)
-    figure = Picture(figsize=(width, HEADER + ROW * len(sides) + FOOTER))
+    figure = Figure(figsize=(width, HEADER + ROW * len(sides) + FOOTER))
     legend.title(figure, result.name + (f"  ({len(shown)} of {n} directions)" if len(shown) < n else ""))
     numbers = [view.disk(result.cells, i, float(result.theta_deg[i]), PIXELS) for i in shown]
     board = disks.Board(figure)

@@ -2,13 +2,12 @@
 
 import io
 
-from matplotlib import rc_context
-from matplotlib.figure import Figure
+from matplotlib import figure, rc_context
 
 from .files import STYLE
 
 
-class Picture(Figure):
+class Figure(figure.Figure):
     """A figure in the style of the files; parameters as of `matplotlib.figure.Figure`."""
 
     def draw(self, renderer):
@@ -21,3 +20,9 @@ class Picture(Figure):
         stream = io.BytesIO()
         self.savefig(stream, format="png")
         return stream.getvalue()
+
+
+def styled(make, *arguments):
+    """Draw ``make(*arguments)``, a `Figure`, in the style of the files."""
+    with rc_context(STYLE):
+        return make(*arguments)
