@@ -122,9 +122,12 @@ def test_labelled_arrays_are_those_of_the_file(tmp_path):
     """Groups, names, axes, coordinates, units, attributes and numbers."""
     result = make_result(orders=2, parametrization="half")
     path = result.save(tmp_path / "result.h5")
-    with xr.open_datatree(path, engine="h5netcdf") as tree:
-        xr.testing.assert_identical(result.to_xarray(), tree.load())
-        assert _types(result.to_xarray()) == _types(tree)
+    with xr.open_datatree(path, engine="h5netcdf") as file:
+        # Sums over the bytes of a file mean nothing beside it.
+        groups = {group: data.load() for group, data in file.to_dict().items() if group != "/checksums"}
+    tree = xr.DataTree.from_dict(groups)
+    xr.testing.assert_identical(result.to_xarray(), tree)
+    assert _types(result.to_xarray()) == _types(tree)
 
 
 def _types(tree):
