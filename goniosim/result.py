@@ -285,7 +285,7 @@ class Result:
         return albedo(self, component)
 
     def to_xarray(self) -> DataTree:
-        """Turn the result into labelled arrays: what ``xarray.open_datatree`` makes of its file.
+        """Turn the result into labelled arrays: what ``xarray.open_datatree`` makes of its file, but for checksums.
 
         Returns
         -------

@@ -27,8 +27,8 @@ def to_datatree(result: Result) -> xarray.DataTree:
     Returns
     -------
     xarray.DataTree
-        Equal to what ``xarray.open_datatree`` makes of the file of the result. The arrays are shared
-        with the result, not copied.
+        Equal to what ``xarray.open_datatree`` makes of the file of the result, but for the checksums of
+        the file. The arrays are shared with the result, not copied.
 
     Raises
     ------
