@@ -327,7 +327,7 @@ class Result:
 
         Examples
         --------
-        >>> result.plot(theta_deg=60).savefig("coated-60.png")
+        >>> figure = result.plot(theta_deg=60)
         """
         from goniosim.report.simulation.figures import figure
 

@@ -212,19 +212,19 @@ def test_a_study_gives_a_result_for_each_name():
 def test_a_study_in_a_folder_goes_on_where_it_ended(tmp_path):
     folder = tmp_path / "new" / "coats"
     paths = {name: folder / f"{name}.h5" for name in NAMES}
-    first = goniosim.simulate_study(STUDY, folder=folder, rays=4e6, threads=1, progress=press(after=9_000_000))
+    first = goniosim.simulate_study(STUDY, folder=folder, rays=5e5, threads=1, progress=press(after=1_100_000))
     assert first == {name: paths[name] for name in NAMES[:2]}
     assert [goniosim.open_result(path).status for path in first.values()] == ["complete", "partial"]
     (folder / "coat-0.2.h5").unlink()
     before = paths["coat-0.1"].stat()
-    assert goniosim.simulate_study(STUDY, folder=folder, rays=4e6) == paths
+    assert goniosim.simulate_study(STUDY, folder=folder, rays=5e5) == paths
     assert paths["coat-0.1"].stat().st_mtime_ns == before.st_mtime_ns
     assert {goniosim.open_result(path).status for path in paths.values()} == {"complete"}
     assert sorted(folder.iterdir()) == sorted(paths.values())
 
 
 def test_an_interrupted_study_keeps_what_is_finished():
-    results = goniosim.simulate_study(STUDY, rays=4e6, threads=1, progress=press(after=9_000_000))
+    results = goniosim.simulate_study(STUDY, rays=5e5, threads=1, progress=press(after=1_100_000))
     assert {name: result.status for name, result in results.items()} == {"coat-0.1": "complete", "coat-0.2": "partial"}
     stop = threading.Event()
     stop.set()

@@ -105,8 +105,9 @@ def test_many_directions_are_not_all_listed():
     assert "transmission not traced>" in repr(many)
 
 
-def test_a_figure_of_all_directions_or_of_one(result, tmp_path):
+def test_a_figure_of_all_directions_or_of_one(tmp_path):
     """Saved by hand it is the picture that the command draws; notebooks show it without pyplot."""
+    result = make_result(channels=("R", "G", "B"), components=("transmission",))
     (written,) = draw(result, tmp_path, "stem", theta_deg=[60.0])
     figure = result.plot(theta_deg=60)
     figure.savefig(tmp_path / "own.png")
