@@ -27,8 +27,16 @@ STUDY = {
     **{key: SCENE[key] for key in ("incident", "slice", "simulation")},
 }
 NAMES = ["coat-0.1", "coat-0.2", "coat-0.3"]
-# Days of tracing: a test that misses its interrupt does not pass by finishing first.
-MANY = 1e12
+# Enough to be interrupted, and few enough that a test which is not comes to an end.
+MANY = 3e8
+
+
+@pytest.fixture(autouse=True)
+def hearing():
+    """Ctrl-C as in a terminal: a shell lets what it starts in the background ignore it."""
+    earlier = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, earlier)
 
 
 def press(after=0, times=1):
