@@ -34,12 +34,12 @@ def check(config, output, rays, threads, overrides, as_json):
               goniosim check quickstart.yaml --rays 1e8 --json
     """  # noqa: D301
     from goniosim.report.simulation import forecast
-    from goniosim.scene import load_config
+    from goniosim.scene import Override, load_config
 
     from . import jobs
 
-    given = {"rays": rays, "threads": threads}
-    options = [f"simulation.{name}={value}" for name, value in given.items() if value is not None]
+    given = {name: value for name, value in (("rays", rays), ("threads", threads)) if value is not None}
+    options = [Override(f"simulation.{name}={value}", f"--{name} {value}") for name, value in given.items()]
     described = load_config(config, [*overrides, *options])
     scenes, many = described.scenes, described.study is not None
     if output:

@@ -62,10 +62,18 @@ class FileName(click.ParamType):
 
 PATH = FileName()
 
+
+def _overrides(ctx, param, values):
+    from goniosim.scene import Override
+
+    return [Override(value, f"--set {value}") for value in values]
+
+
 set_option = click.option(
     "--set",
     "overrides",
     multiple=True,
+    callback=_overrides,
     metavar="PATH=VALUE",
     help="Change one value of the scene, as in --set simulation.orders=3; may be repeated.",
 )

@@ -44,12 +44,12 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, qui
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study
     from goniosim.report.simulation.summary import summary
-    from goniosim.scene import load_config
+    from goniosim.scene import Override, load_config
 
     from . import jobs
 
-    given = {"rays": rays, "seed": seed, "threads": threads}
-    options = [f"simulation.{name}={value}" for name, value in given.items() if value is not None]
+    given = {name: value for name, value in (("rays", rays), ("seed", seed), ("threads", threads)) if value is not None}
+    options = [Override(f"simulation.{name}={value}", f"--{name} {value}") for name, value in given.items()]
     described = load_config(config, [*overrides, *options])
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)

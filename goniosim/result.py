@@ -2,11 +2,23 @@
 
 Axes are always ``[direction, channel, row, column]``; M directions, C channels,
 R rows, K columns.
+
+What people do with a result is a method of it, so that they find it, and a line long: it hands on to the
+room that knows how, which is imported when the method is called. The ground itself needs no other room.
 """
 
+from __future__ import annotations
+
+import os
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from xarray import DataTree
 
 
 @dataclass
@@ -39,7 +51,12 @@ class Component:
     bsdf_stderr: np.ndarray
     hits: np.ndarray | None = None
     contains_delta: bool = False
-    orders: dict[str, "Component"] = field(default_factory=dict)
+    orders: dict[str, Component] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        from goniosim.report import brief
+
+        return brief.component(self)
 
 
 @dataclass
@@ -69,6 +86,11 @@ class Cells:
     solid_angle: np.ndarray
     projected_solid_angle: np.ndarray
 
+    def __repr__(self) -> str:
+        from goniosim.report import brief
+
+        return brief.cells(self)
+
 
 @dataclass
 class Audit:
@@ -96,6 +118,11 @@ class Audit:
     def residual(self) -> np.ndarray:
         """1 minus the sum of all entries, shape (M, C): rounding only."""
         return 1.0 - np.sum(list(self.energy.values()), axis=0)
+
+    def __repr__(self) -> str:
+        from goniosim.report import brief
+
+        return brief.audit(self)
 
 
 AUDIT_ENTRIES = {
@@ -132,6 +159,11 @@ class Cost:
     seconds: np.ndarray
     cpu_seconds: np.ndarray
     error: dict[str, np.ndarray]
+
+    def __repr__(self) -> str:
+        from goniosim.report import brief
+
+        return brief.cost(self)
 
 
 @dataclass
@@ -182,3 +214,121 @@ class Result:
     cost: Cost
     effects: dict[str, bool]
     provenance: dict[str, str]
+
+    def __repr__(self) -> str:
+        from goniosim.report import brief
+
+        return brief.result(self)
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
+        """Write the result into a file, whole or not at all; `goniosim.open_result` reads it.
+
+        Parameters
+        ----------
+        path : str or Path
+        overwrite : bool
+            Replace whatever result stands there. Without it one of another scene, or of more rays, stays.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        goniosim.errors.OutputError
+            It cannot be written, or would replace what is to stay.
+
+        Examples
+        --------
+        >>> file = result.save("coated.h5")
+        >>> goniosim.open_result(file).name
+        'coated'
+        """
+        from goniosim.store import write_result
+
+        write_result(self, path, overwrite=overwrite)
+        return Path(path)
+
+    def albedo(self, component: str | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Share of the incident energy that leaves in a component, with its standard error.
+
+        Parameters
+        ----------
+        component : str, optional
+            One of `components`; one of its orders, such as ``reflection/internal/order_2``; or ``reflection``
+            for all that leaves upwards. Without it, all that leaves.
+
+        Returns
+        -------
+        value, stderr : ndarray, shape (M, C)
+            The standard error of a sampled component is that of its entry in the `audit`, from the scatter
+            between independent parts of the rays; that of ``reflection/direct`` is the integration's. Orders,
+            and internal reflection and transmission together, have no such entry: theirs follows from the
+            errors of the cells and from the fact that a path leaves in one cell only. Where no path arrived
+            it is 1.5 / `rays`, since that much may have gone unseen; both are NaN where no ray was traced. Channels
+            share their paths, and so their errors; directions are independent of each other.
+
+        Raises
+        ------
+        goniosim.errors.UnusableResultError
+            There is no such component; the message names those that there are.
+
+        Examples
+        --------
+        >>> value, stderr = result.albedo("reflection/internal")
+        >>> value.shape
+        (2, 3)
+        """
+        from goniosim.albedo import albedo
+
+        return albedo(self, component)
+
+    def to_xarray(self) -> DataTree:
+        """Turn the result into labelled arrays: what ``xarray.open_datatree`` makes of its file, but for checksums.
+
+        Returns
+        -------
+        xarray.DataTree
+            Sharing its arrays with the result.
+
+        Raises
+        ------
+        ImportError
+            xarray is not installed: ``pip install goniosim[xarray]``.
+
+        Examples
+        --------
+        >>> tree = result.to_xarray()
+        >>> tree["reflection/internal/bsdf"].dims
+        ('direction', 'channel', 'row', 'column')
+        """
+        from goniosim.store import to_datatree
+
+        return to_datatree(self)
+
+    def plot(self, theta_deg: float | None = None) -> Figure:
+        """Draw the result; notebooks show the figure.
+
+        Parameters
+        ----------
+        theta_deg : float, optional
+            An incident direction, to see each component of it. Without it, an overview of all directions.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Drawn off screen, without pyplot: ``savefig`` writes it.
+
+        Raises
+        ------
+        goniosim.errors.UnusableResultError
+            The direction was not simulated; the message names those that were.
+
+        Examples
+        --------
+        >>> figure = result.plot(theta_deg=60)
+        """
+        from goniosim.report.simulation.figures import figure
+
+        return figure(self, theta_deg)

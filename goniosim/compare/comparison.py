@@ -1,8 +1,9 @@
 """The comparison of published models with simulated slices: what `goniosim.compare` does."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Integral
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from ..result import Result
 from ..store import is_models_file, open_result
 from ..writing import StrPath
 from .material import MaterialComparison, compare_material
-from .rows import material_rows
+from .rows import error, label, material_rows
 from .variants import check_request
 
 MAX_SUBCELLS = 99
@@ -34,6 +35,17 @@ class Comparison:
 
     materials: list[MaterialComparison]
     errors: list[dict[str, Any]]
+
+    def __repr__(self) -> str:
+        lines = [f"<Comparison with {_count(len(self.materials), 'material')}"]
+        if self.materials:
+            lines[0] += ": RMSE [sr^-1/2] over all directions, mean over the channels"
+        for material in self.materials:
+            found = [row for row in self.rows() if row["material"] == material.result.name]
+            lines.append(f"  {material.result.name}, {material.components[0]}")
+            lines += [f"    {label(row):<{max(map(len, map(label, found)))}}  {error(row)}" for row in found]
+            lines += [f"    {name}: n/a, {reason}" for name, reason in material.not_applicable.items()]
+        return "\n".join(lines) + ">"
 
     def rows(
         self, component: str | None = None, channel: str = "mean", theta_deg: float | str = "all"
@@ -63,8 +75,8 @@ class Comparison:
 
 
 def compare(
-    results: Source | Sequence[Source],
-    models: Sequence[str] | None = None,
+    results: Source | Iterable[Source],
+    models: str | Sequence[str] | None = None,
     options: Mapping[str, Mapping[str, object]] | None = None,
     subcells: int = 5,
     *,
@@ -77,10 +89,10 @@ def compare(
 
     Parameters
     ----------
-    results : Result, path, or sequence of them
+    results : Result, path, or iterable of them
         A path may be a result file or a folder of them. All their slices are kept in memory: give a
         large study piece by piece.
-    models : sequence of str, optional
+    models : str or sequence of str, optional
         Names from `goniosim.models.MODELS`; all by default.
     options : mapping of str to mapping, optional
         Options of models, as in ``{"ww09": {"masking": "correlated"}}``.
@@ -101,12 +113,22 @@ def compare(
         A result is partial or empty, or two have the same name.
     ForeignFileError, DamagedFileError, NewerSchemaError
         A file is not a result that can be read.
+
+    Examples
+    --------
+    >>> comparison = goniosim.compare(result, models=["ww09", "bati19_ww"])
+    >>> comparison
+    <Comparison with 1 material: RMSE [sr^-1/2] over all directions, mean over the channels
+      coated, reflection/internal
+        ww09       0.0964 ± 0.0013
+        bati19_ww  0.0458 ± 0.0016>
+    >>> [row["model"] for row in comparison.rows(theta_deg=60)]
+    ['ww09', 'bati19_ww']
     """
-    request = check_request(models, options)
+    request = check_request([models] if isinstance(models, str) else models, options)
     check_subcells(subcells)
-    sources = [results] if isinstance(results, Result | str | os.PathLike) else results
     found: list[Result | Path] = []
-    for source in sources:
+    for source in _sources(results):
         found += [source] if isinstance(source, Result) else result_files(source)[0]
     materials: list[MaterialComparison] = []
     with Pool() as pool:
@@ -121,9 +143,25 @@ def compare(
     return Comparison(materials, [row for material in materials for row in material_rows(material)])
 
 
+def _sources(results: object) -> list[Source]:
+    kinds = (Result, str, os.PathLike)
+    given = [results] if isinstance(results, kinds) or not isinstance(results, Iterable) else list(results)
+    if not given:
+        raise ConfigError("there are no results to compare with")
+    sources = [each for each in given if isinstance(each, kinds)]
+    if len(sources) < len(given):
+        raise ConfigError("what is compared must be results, or paths of result files or folders")
+    return sources
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")
+
+
 def check_subcells(subcells: int) -> None:
     """Raise a ConfigError if ``subcells`` is not a sensible number."""
-    if not isinstance(subcells, int) or not 1 <= subcells <= MAX_SUBCELLS:
+    whole = isinstance(subcells, Integral) and not isinstance(subcells, bool)
+    if not whole or not 1 <= subcells <= MAX_SUBCELLS:
         raise ConfigError(f"subcells must be a whole number from 1 to {MAX_SUBCELLS} [got {subcells!r}]")
 
 

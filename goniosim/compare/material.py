@@ -46,6 +46,10 @@ class Slices:
     seconds: float
     contains_delta: bool
 
+    def __repr__(self):
+        directions, channels, rows, columns = self.energy.shape
+        return f"<Slices: {directions} directions, {channels} channels, {rows} x {columns} cells>"
+
 
 @dataclass(frozen=True)
 class Compared:
@@ -70,6 +74,10 @@ class Compared:
     converged: Measures
     integration: list
     seconds: float
+
+    def __repr__(self):
+        found = rmse(self.measures)
+        return f"<Compared {self.variant.label}, {self.component}: RMSE {found.rmse:.3g} ± {found.stderr:.1g} sr^-1/2>"
 
     def is_converged(self, direction=None, channel=None):
         """Whether the sub-cells asked for give the RMSE to 2 %; arguments as in `measures.rmse`."""
@@ -112,6 +120,10 @@ class MaterialComparison:
     components: tuple
     compared: list
     slices: dict
+
+    def __repr__(self):
+        labels = ", ".join(variant.label for variant in self.variants)
+        return f"<MaterialComparison {self.result.name}, {', '.join(self.components)}: {labels or 'no model applies'}>"
 
     @property
     def simulation_seconds(self):

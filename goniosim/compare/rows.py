@@ -1,5 +1,7 @@
 """The table of errors: one row for each material, model, component, channel and direction."""
 
+import math
+
 from .measures import rmse
 
 # Column: unit and meaning.
@@ -71,6 +73,24 @@ def material_rows(comparison):
         row |= {"component": comparison.components[0], "channel": "mean", "theta_deg": "all", "note": reason}
         rows.append(row)
     return rows
+
+
+def label(row):
+    """Label of the variant of a row: the model, with its options in brackets."""
+    return f"{row['model']}[{row['options']}]" if row["options"] else row["model"]
+
+
+def error(row):
+    """RMSE of a row with its standard error, in a few words."""
+    if row["below_noise"]:
+        return f"below noise, < {row['rmse_upper']:.2g}"
+    value, stderr = row["rmse"], row["rmse_stderr"]
+    text = f"{value:.4g}"
+    if stderr > 0.0:
+        # Two digits of the error, and as many decimals of the value.
+        decimals = max(1 - math.floor(math.log10(stderr)), 0)
+        text = f"{value:.{decimals}f} ± {stderr:.{decimals}f}"
+    return text if row["converged"] else f"{text} ({row['subcells']} x {row['subcells']} sub-cells too coarse)"
 
 
 def _row(comparison, found, direction, channel):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene import optical_stack
-from .rows import material_rows
+from .rows import label, material_rows
 
 PLASTICS, METALS, SLABS = CATEGORIES = ("plastics", "metals", "slabs")
 
@@ -56,7 +56,7 @@ class Summary:
 
     def label_of(self, row):
         """Label of the variant of a row."""
-        return f"{row['model']}[{row['options']}]" if row["options"] else row["model"]
+        return label(row)
 
 
 def summarise(comparison):

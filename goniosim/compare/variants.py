@@ -1,6 +1,7 @@
 """Which models are compared with a material, and with which options."""
 
 import dataclasses
+from collections.abc import Iterable, Mapping
 
 from ..errors import ConfigError
 from ..models import MODELS, describe_options, find_model
@@ -57,7 +58,12 @@ def check_request(models=None, options=None):
     ConfigError
         An unknown model, option or value; all mistakes at once.
     """
-    options = options or {}
+    options = {} if options is None else options
+    if not isinstance(options, Mapping):
+        raise ConfigError(f"options must be a mapping of models to their options [got {options!r}]")
+    if not isinstance(models, Iterable | None):
+        raise ConfigError(f"models must be names of models [got {models!r}]")
+    models = None if models is None else list(models)
     problems = []
     for name in [*(models or ()), *options]:
         try:

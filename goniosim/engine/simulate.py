@@ -11,7 +11,7 @@ from ..errors import ResourceError, StoppedError
 from ..integration import Pool
 from ..provenance import provenance
 from ..result import Cost, Result
-from ..scene import CHANNELS, effects, parse_scene
+from ..scene import CHANNELS, effects, with_arguments
 from . import estimate
 from .direct import direct_reflection
 from .faint import faint_weights
@@ -47,16 +47,13 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     Raises
     ------
     goniosim.errors.ConfigError
-        If an override is out of range.
+        If ``rays``, ``seed`` or ``threads`` is out of range.
     goniosim.errors.ResourceError
         If it does not fit into the memory that is free.
     goniosim.errors.StoppedError
         If it was stopped before any work unit was finished.
     """
-    wanted = {"rays": rays, "seed": seed, "threads": threads}
-    overrides = [f"simulation.{key}={value}" for key, value in wanted.items() if value is not None]
-    if overrides:
-        scene = parse_scene(scene.to_yaml(), overrides=overrides)
+    scene = with_arguments(scene, {"rays": rays, "seed": seed, "threads": threads})
     require_memory(scene)
     try:
         return _simulate(scene, make_plan(scene), threads_of(scene), progress, stop)

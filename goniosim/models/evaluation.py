@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from goniosim.errors import ConfigError
-from goniosim.scene import Scene
+from goniosim.scene import Scene, Source, as_scene
 from goniosim.scene.problems import closest, listed
 
 from .model import COMPONENTS, Model, Prepared
@@ -105,7 +105,7 @@ def prepare(
 
 def evaluate_model(
     name: str,
-    scene: Scene,
+    scene: Scene | Source,
     theta_i_deg: ArrayLike,
     theta_o_deg: ArrayLike,
     phi_o_deg: ArrayLike,
@@ -118,8 +118,8 @@ def evaluate_model(
     ----------
     name : str
         One of `MODELS`.
-    scene : goniosim.scene.Scene
-        Only its material counts.
+    scene : goniosim.scene.Scene, path, mapping or str
+        A scene, or what `load_scene` takes; only its material counts.
     theta_i_deg : array_like
         Polar angle of the light, which stands at azimuth 0; from 0 to below 90 degrees.
     theta_o_deg, phi_o_deg : array_like
@@ -140,12 +140,22 @@ def evaluate_model(
     Raises
     ------
     ConfigError
-        The model, the component or an option is unknown, an angle is out of range, or the model
-        does not apply to the material.
+        The model, the component or an option is unknown, an angle is no number or out of range, or the
+        model does not apply to the material.
+
+    Examples
+    --------
+    >>> goniosim.evaluate_model("ww09", "scene.yaml", 30, [0, 40], 180).shape
+    (3, 2)
     """
-    theta_i, theta_o, phi_o = np.broadcast_arrays(
-        *(np.asarray(angle, dtype=float) for angle in (theta_i_deg, theta_o_deg, phi_o_deg))
-    )
+    scene = as_scene(scene)
+    angles = {"theta_i_deg": theta_i_deg, "theta_o_deg": theta_o_deg, "phi_o_deg": phi_o_deg}
+    try:
+        theta_i, theta_o, phi_o = np.broadcast_arrays(*(np.asarray(angle, float) for angle in angles.values()))
+    except (TypeError, ValueError) as error:
+        raise ConfigError(
+            f"{listed(list(angles))} must be numbers, or arrays of them that broadcast: {error}"
+        ) from None
     if not np.all((theta_o >= 0.0) & (theta_o <= 90.0)):
         raise ConfigError("theta_o_deg must lie between 0 and 90, both included")
     if not np.all(np.isfinite(phi_o)):

@@ -99,7 +99,8 @@ class Bar(_Shown):
 
     def _show_description(self):
         if self._bar is None:
-            from tqdm import tqdm
+            # In a notebook, a widget.
+            from tqdm.auto import tqdm
 
             # Made only now, so that compilation before the first ray does not spoil the rate.
             self._bar = tqdm(

@@ -1,11 +1,13 @@
 """What the user describes: typed, checked, and read from YAML with the line of every mistake."""
 
+from goniosim.scene.arguments import with_arguments
 from goniosim.scene.differences import differences
 from goniosim.scene.effects import Effect, absent_interfaces, distinct_channels, effects
 from goniosim.scene.example import example
-from goniosim.scene.load import Config, load_config, load_scene, load_scenes, parse_scene
+from goniosim.scene.load import Config, Source, as_scene, as_scenes, load_config, load_scene, load_scenes, parse_scene
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.optical import OpticalStack, optical_stack
+from goniosim.scene.overrides import Override
 from goniosim.scene.quantity import CHANNELS
 from goniosim.scene.schema import json_schema
 
@@ -16,10 +18,14 @@ __all__ = [
     "Incident",
     "Material",
     "OpticalStack",
+    "Override",
     "Scene",
     "Simulation",
     "Slice",
+    "Source",
     "absent_interfaces",
+    "as_scene",
+    "as_scenes",
     "differences",
     "distinct_channels",
     "effects",
@@ -30,4 +36,5 @@ __all__ = [
     "load_scenes",
     "optical_stack",
     "parse_scene",
+    "with_arguments",
 ]

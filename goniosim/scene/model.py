@@ -25,6 +25,9 @@ Seed = Number(0, 2**63 - 1, "be a whole number from 0 to 2^63 - 1", integer=True
 Orders = Number(1, 16, "be a whole number from 1 to 16; leave it out for no decomposition", integer=True)
 Threads = Number(1, 4096, "be a whole number from 1 to 4096; leave it out to use every core", integer=True)
 
+# More layers or angles are counted by a short text, not listed.
+MOST_SHOWN = 10
+
 
 class FileName(Checked):
     """Annotation for a pydantic field: text that is safe as the stem of a file name."""
@@ -169,6 +172,21 @@ class Scene(Part):
     incident: Incident
     slice: Slice = Slice()
     simulation: Simulation = Simulation()
+
+    def __repr__(self) -> str:
+        layers = [layer.interface.type if layer.interface else "medium" for layer in self.material.layers]
+        angles = [f"{theta:.10g}" for theta in self.incident.theta_deg]
+        rays = f"{self.simulation.rays:.4g}".replace("e+0", "e").replace("e+", "e")
+        parts = [
+            ", ".join(layers) if len(layers) <= MOST_SHOWN else f"{len(layers)} layers",
+            f"theta_deg {', '.join(angles)}" if len(angles) <= MOST_SHOWN else f"{len(angles)} directions",
+            f"{self.slice.parametrization} slices of {self.slice.rows} x {self.slice.columns} cells",
+            f"{rays} rays",
+            f"seed {self.simulation.seed}",
+        ]
+        return f"<Scene {self.material.name}: {'; '.join(parts)}>"
+
+    __str__ = __repr__
 
     def to_yaml(self) -> str:
         """Write the scene as YAML, complete with its defaults.

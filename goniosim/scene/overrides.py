@@ -1,7 +1,7 @@
-"""Changes to a scene file from the command line: ``--set path=value``."""
+"""Changes to a scene before it is checked: ``path=value``."""
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from goniosim.errors import ConfigError
 from goniosim.scene.problems import closest
@@ -9,13 +9,29 @@ from goniosim.scene.reading import read_value
 from goniosim.scene.tree import Node, Origin, Path, parse_path, show_path
 
 
-def override(root: Node, assignments: Iterable[str]) -> Node:
+@dataclass(frozen=True)
+class Override:
+    """A change, and how the user asked for it.
+
+    Attributes
+    ----------
+    assignment : str
+        ``path=value``.
+    shown : str
+        What messages about it begin with, such as an option of the command line.
+    """
+
+    assignment: str
+    shown: str
+
+
+def override(root: Node, assignments: Iterable[str | Override]) -> Node:
     """Apply overrides to the raw content of a scene or study file.
 
     Parameters
     ----------
     root : Node
-    assignments : iterable of str
+    assignments : iterable of str or Override
         Each ``path=value``; the value is YAML. Later ones win. A mapping that
         is absent on the way is made, and a list keeps its length.
 
@@ -29,9 +45,10 @@ def override(root: Node, assignments: Iterable[str]) -> Node:
         Not of that form, or the path leads nowhere; names all that do.
     """
     problems: list[str] = []
-    for assignment in assignments:
-        source = f"--set {assignment}"
-        path_text, equals, value_text = str(assignment).partition("=")
+    for each in assignments:
+        change = each if isinstance(each, Override) else Override(str(each), f"override {each}")
+        source = change.shown
+        path_text, equals, value_text = change.assignment.partition("=")
         path = parse_path(path_text.strip())
         if path is None or not equals:
             problems.append(f"{source}: must be path=value, such as simulation.rays=1e6")

@@ -14,7 +14,7 @@ class Problem:
     Attributes
     ----------
     source : str
-        File name, or the ``--set`` override.
+        File name, or the override; empty for what Python hands over.
     line : int
         Line in that file, from 1; 0 where there are no lines.
     field : str
@@ -40,7 +40,7 @@ class Problem:
 
     def __str__(self) -> str:
         where = f"{self.source}:{self.line}" if self.line else self.source
-        text = f"{where}: {self.field}: {self.message}" if self.field else f"{where}: {self.message}"
+        text = ": ".join(filter(None, [where, self.field, self.message]))
         if self.got is not None:
             text += f" [got {self.got}]"
         if self.suggestion is not None:

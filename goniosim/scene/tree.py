@@ -1,6 +1,7 @@
 """The raw content of a scene file, in which every value knows where it was written."""
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,7 +19,7 @@ class Origin:
     Attributes
     ----------
     source : str
-        File name, or the ``--set`` override.
+        File name, or the override; empty for what Python hands over.
     line : int
         Line in that file, from 1; 0 where there are no lines.
     path : tuple of str and int
@@ -96,11 +97,12 @@ def size(node: Node) -> int:
 
 
 def from_plain(value: object, origin: Origin) -> Node:
-    """Wrap dicts, lists and scalars that come without positions.
+    """Wrap mappings, sequences and scalars that come without positions.
 
     Parameters
     ----------
     value : object
+        Arrays and numbers of numpy are as good as lists and plain numbers.
     origin : Origin
         Where the whole was written; entries share all but its path.
 
@@ -115,9 +117,11 @@ def from_plain(value: object, origin: Origin) -> Node:
     """
     if len(origin.path) > MAX_DEPTH:
         raise RecursionError
-    if isinstance(value, dict):
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
         return Node({str(key): from_plain(item, _below(origin, str(key))) for key, item in value.items()}, origin)
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return Node([from_plain(item, _below(origin, index)) for index, item in enumerate(value)], origin)
     return Node(value, origin)
 

@@ -1,5 +1,6 @@
 """Result files: the one place that knows HDF5. `data_schema.md` describes the format."""
 
+from goniosim.store.datatree import to_datatree
 from goniosim.store.keeping import Standing, look_at, refuse_newer
 from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_be_models_file, open_models
 from goniosim.store.output import Reservation, reserve_output
@@ -21,5 +22,6 @@ __all__ = [
     "read_header",
     "refuse_newer",
     "reserve_output",
+    "to_datatree",
     "write_result",
 ]

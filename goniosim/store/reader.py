@@ -39,6 +39,11 @@ def open_result(path: StrPath) -> Result:
         If its major schema version is newer than this goniosim reads.
     UnusableResultError
         If it is a file of integrated models: `goniosim.store.open_models` reads those.
+
+    Examples
+    --------
+    >>> goniosim.open_result("result.h5").status
+    'complete'
     """
     with userblock.open_regular(path) as stream:
         block = _user_block(stream, path)

@@ -32,7 +32,7 @@ def encode(result: Result) -> tuple[bytes, bytes]:
     ValueError
         If the result contradicts the schema.
     """
-    attributes = _root_attributes(result)
+    attributes = root_attributes(result)
     sizes = {
         "direction": len(result.theta_deg),
         "channel": len(result.channels),
@@ -51,7 +51,7 @@ def encode(result: Result) -> tuple[bytes, bytes]:
             if np.shape(values) != shape:
                 raise ValueError(f"{path} has shape {np.shape(values)}, not {shape}")
             write_dataset(file, path, values, entry)
-        for path, component in _components(result.components):
+        for path, component in components_of(result.components):
             file[path].attrs["contains_delta"] = np.int8(component.contains_delta)
         write_text(file["cells"], "parametrization", result.cells.parametrization)
         effects = file.create_group("effects")
@@ -67,7 +67,8 @@ def encode(result: Result) -> tuple[bytes, bytes]:
     return userblock.make(image, attributes), image
 
 
-def _root_attributes(result: Result) -> dict[str, str | int]:
+def root_attributes(result: Result) -> dict[str, str | int]:
+    """Attributes of the root of a result file; a ValueError if the result contradicts the schema."""
     if result.status not in ("complete", "partial"):
         raise ValueError(f"status is {result.status!r}, not 'complete' or 'partial'")
     missing = {"created_utc", "goniosim_version"} - result.provenance.keys()
@@ -87,13 +88,13 @@ def _root_attributes(result: Result) -> dict[str, str | int]:
     return {"seed": int(result.seed), **{name: utf8(text).decode() for name, text in texts.items()}}
 
 
-def _components(components: Mapping[str, Component], parent: str = "") -> Iterator[tuple[str, Component]]:
+def components_of(components: Mapping[str, Component], parent: str = "") -> Iterator[tuple[str, Component]]:
     """Paths and components, orders after the component that they decompose."""
     for name, component in components.items():
         if not parent and name not in COMPONENTS:
             raise ValueError(f"the schema has no component {name}")
         yield parent + name, component
-        yield from _components(component.orders, f"{parent}{name}/")
+        yield from components_of(component.orders, f"{parent}{name}/")
 
 
 def arrays(result: Result) -> Iterator[tuple[str, Any]]:
@@ -109,7 +110,7 @@ def arrays(result: Result) -> Iterator[tuple[str, Any]]:
     yield "channels/name", result.channels
     for name in ("row_edges", "column_edges", "valid", "solid_angle", "projected_solid_angle"):
         yield f"cells/{name}", getattr(cells, name)
-    for path, component in _components(result.components):
+    for path, component in components_of(result.components):
         for name in ("energy", "stderr", "bsdf", "bsdf_stderr"):
             yield f"{path}/{name}", getattr(component, name)
         if component.hits is not None:

@@ -35,13 +35,11 @@ def test_importing_the_package_loads_nothing_heavy(python):
 def test_the_public_names_are_there_and_no_others():
     import goniosim
 
-    names = ["__version__", "compare", "evaluate_model", "load_scene", "open_result", "simulate"]
-    assert dir(goniosim) == names
+    functions = ["compare", "evaluate_model", "load_scene", "load_scenes", "open_result", "simulate", "simulate_study"]
+    assert dir(goniosim) == sorted(["GoniosimError", "Result", "Scene", "__version__", "errors", *functions])
     assert goniosim.__version__ == version("goniosim")
-    assert callable(goniosim.load_scene)
-    assert callable(goniosim.open_result)
-    assert callable(goniosim.compare)
-    assert callable(goniosim.evaluate_model)
+    assert all(callable(getattr(goniosim, name)) for name in functions)
+    assert issubclass(goniosim.errors.ConfigError, goniosim.GoniosimError)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = goniosim.nonsense
 

@@ -196,9 +196,9 @@ def test_a_dict_has_no_lines_but_the_same_sentences():
     with pytest.raises(ConfigError) as caught:
         parse_scene({"material": {"name": "a", "layers": [{"interface": {"type": "lambert", "rho": 2}}]}})
     assert caught.value.problems == [
-        "<string>: material.layers[0].interface.rho: must lie between 0 and 1: "
+        "material.layers[0].interface.rho: must lie between 0 and 1: "
         "it is the fraction of the light that the base sends back [got 2]",
-        "<string>: incident: is missing: this key is required",
+        "incident: is missing: this key is required",
     ]
     endless = {}
     endless["material"] = endless

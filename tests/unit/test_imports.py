@@ -18,7 +18,7 @@ ROOT = Path(goniosim.__file__).resolve().parent.parent
 MODULES = {"goniosim": ROOT / "goniosim", "goniosim_cli": ROOT / "cli"}
 
 # The ground, which every room may use; `_jit` brings numba along and is for rooms with compiled code.
-GROUND = {"cores", "errors", "free_memory", "parts", "provenance", "result", "writing"}
+GROUND = {"albedo", "cores", "errors", "free_memory", "parts", "provenance", "result", "writing"}
 COMPILED = {"_jit"}
 
 # For each room, the rooms that it may import besides itself and the ground. A new room is a new line.
@@ -33,9 +33,19 @@ MAY_IMPORT = {
     "store": {"scene"},
     "compare": COMPILED | {"optics", "slices", "integration", "scene", "models", "store"},
     "report": {"slices", "integration", "scene", "models", "engine", "store", "compare"},
+    "api": {"scene", "engine", "store", "report"},
     # The public face, which nobody inside imports, and the roof.
-    "goniosim": {"scene", "models", "engine", "store", "compare"},
+    "goniosim": {"scene", "models", "store", "compare", "api"},
     "goniosim_cli": {"goniosim", "scene", "models", "engine", "store", "compare", "report"},
+}
+
+# Methods of a result that hand on to rooms above, so that people find on it what they want to do with it. Imported
+# when the method is called, and nowhere else: without them a result is plain data, which needs nothing.
+HANDED_ON = {
+    ("goniosim.result", "goniosim.albedo"),
+    ("goniosim.result", "goniosim.report.brief"),
+    ("goniosim.result", "goniosim.report.simulation.figures"),
+    ("goniosim.result", "goniosim.store"),
 }
 
 # Libraries that one room knows and hides from the others.
@@ -43,25 +53,29 @@ HOMES = {
     "click": {"goniosim_cli"},
     "h5py": {"store"},
     "llvmlite": {"_jit", "optics"},
-    "matplotlib": {"report"},
+    # A result names the type of what its method returns, for type checkers.
+    "matplotlib": {"report", "result"},
     "numba": {"_jit", "optics"},
     "pydantic": {"scene"},
     "pydantic_core": {"scene"},
     "ruamel": {"scene"},
     "tqdm": {"report"},
+    "xarray": {"store", "result"},
 }
 
 MAX_LINES = 400
 MAX_MEDIAN = 130
 
 
-def imports(packages):
+def imports(packages, walk=ast.walk):
     """What each module imports, anywhere in its text.
 
     Parameters
     ----------
     packages : dict of str to Path
         Folder of each package by the name under which it is imported.
+    walk : callable
+        The nodes of a syntax tree among which to look.
 
     Returns
     -------
@@ -73,12 +87,12 @@ def imports(packages):
         for path in folder.rglob("*.py"):
             parts = (package, *path.relative_to(folder).with_suffix("").parts)
             paths[".".join(parts).removesuffix(".__init__")] = path
-    return {name: set(_imported(name, path, paths)) - {name} for name, path in paths.items()}
+    return {name: set(_imported(name, path, paths, walk)) - {name} for name, path in paths.items()}
 
 
-def _imported(name, path, known):
+def _imported(name, path, known, walk):
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -127,9 +141,29 @@ def wrong_ways(imported, may_import):
     )
 
 
+def outside_functions(node):
+    """The nodes of a syntax tree that are met when a module is imported."""
+    yield node
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.FunctionDef):
+            yield from outside_functions(child)
+
+
 @pytest.fixture(scope="module")
-def imported():
+def everything():
     return imports(MODULES)
+
+
+@pytest.fixture(scope="module")
+def imported(everything):
+    handed_on = {name: {target for user, target in HANDED_ON if user == name} for name in everything}
+    return {name: targets - handed_on[name] for name, targets in everything.items()}
+
+
+def test_what_a_result_hands_on_is_imported_by_its_methods_only(everything):
+    at_once = imports(MODULES, outside_functions)
+    assert [(name, target) for name, target in HANDED_ON if target in at_once[name]] == []
+    assert [(name, target) for name, target in HANDED_ON if target not in everything[name]] == []
 
 
 def test_every_room_is_on_the_map(imported):

@@ -135,19 +135,19 @@ def test_an_override_mends_a_mistake_of_the_file():
 def test_a_wrong_override_is_named(assignment, line):
     with pytest.raises(ConfigError) as caught:
         parse_scene(SCENE, "file.yaml", [assignment])
-    assert caught.value.problems == [f"--set {assignment}: {line}"]
+    assert caught.value.problems == [f"override {assignment}: {line}"]
 
 
 def test_all_wrong_overrides_are_named_in_order_after_the_file():
     with pytest.raises(ConfigError) as caught:
         parse_scene(SCENE, "f.yaml", ["a", "b"])
-    assert [line.split(":")[0] for line in caught.value.problems] == ["--set a", "--set b"]
+    assert [line.split(":")[0] for line in caught.value.problems] == ["override a", "override b"]
     with pytest.raises(ConfigError) as caught:
         parse_scene(SCENE.replace("1.5", "15"), "f.yaml", ["simulation.seed=-1", "simulation.rays=1"])
     assert [line.split(": ")[0] for line in caught.value.problems] == [
         "f.yaml:4",
-        "--set simulation.rays=1",
-        "--set simulation.seed=-1",
+        "override simulation.rays=1",
+        "override simulation.seed=-1",
     ]
 
 
@@ -164,6 +164,6 @@ def test_one_scene_is_wanted_and_a_study_is_given(tmp_path):
     with pytest.raises(ConfigError) as caught:
         load_scene(path)
     assert caught.value.problems == [
-        f"{path}:1: study: this file describes several materials, and one is needed here: "
-        "give a file with material, or use load_scenes"
+        f"{path}:1: study: describes several materials, and one is needed here: "
+        "give a scene with material, or use load_scenes or simulate_study"
     ]

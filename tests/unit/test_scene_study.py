@@ -351,7 +351,7 @@ def test_mistakes_of_form(tmp_path, text, lines):
 
 def test_an_override_of_a_study_that_would_suit_a_scene(tmp_path):
     assert mistakes(tmp_path, CROSSED, ["material.name=a"]) == [
-        "--set material.name=a: material: is out of place beside study: "
+        "override material.name=a: material: is out of place beside study: "
         "use study.material with cross, or study.materials"
     ]
     wrong = mistakes(tmp_path, CROSSED, ["study.cross.eta[1]=-1"])

@@ -2,14 +2,9 @@
 
 import numpy as np
 
+from ...albedo import SAMPLED_ENTRY
 from .. import text
 from .losses import masking_lines
-
-# The audit entry whose standard error is that of a sampled component's albedo.
-SAMPLED_ENTRY = {
-    "reflection/internal": "reflected_internal",
-    "transmission": "transmitted",
-}
 
 AUDIT_HEADINGS = {
     "reflected_direct": "reflected\ndirect",

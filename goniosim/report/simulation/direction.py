@@ -1,11 +1,11 @@
 """The figure of one incident direction: a row of three panels for each component."""
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from .. import text
 from ..drawing import bands, inplane, legend, letters, panels, tone, view, zoom
 from ..drawing.disks import Board
+from ..drawing.figure import Figure
 
 PIXELS = 600
 

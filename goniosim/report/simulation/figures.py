@@ -3,9 +3,34 @@
 from ...writing import make_folder
 from .. import text
 from ..drawing import directions
+from ..drawing.figure import styled
 from ..drawing.files import refuse_foreign, write_figure
 from .direction import direction_figure
 from .overview import overview_figure
+
+
+def figure(result, theta_deg=None):
+    """Draw one figure of a result.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+    theta_deg : float, optional
+        The direction; without it, the overview.
+
+    Returns
+    -------
+    goniosim.report.drawing.figure.Figure
+
+    Raises
+    ------
+    UnusableResultError
+        If the angle was not simulated.
+    """
+    if theta_deg is None:
+        return styled(overview_figure, result)
+    (i,) = directions.chosen(result.theta_deg, [float(theta_deg)])
+    return styled(direction_figure, result, i)
 
 
 def draw(result, folder, stem, *, suffix="png", theta_deg=None):

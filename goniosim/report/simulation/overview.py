@@ -1,11 +1,11 @@
 """The overview: all incident directions side by side, what leaves above and what leaves below."""
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ...result import Component
 from .. import text
 from ..drawing import directions, disks, inplane, legend, panels, tone, view
+from ..drawing.figure import Figure
 
 PIXELS = 400
 

@@ -1,0 +1,103 @@
+"""One simulation: the engine, with Ctrl-C and progress."""
+
+import threading
+from typing import Any
+
+from ..errors import ConfigError, StoppedError
+from ..result import Result
+from ..scene import Scene, Source, as_scene, with_arguments
+from .progress import Progress, progress_of
+from .stopping import Stop
+
+
+def simulate(
+    scene: Scene | Source,
+    *,
+    rays: float | None = None,
+    seed: float | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    stop: threading.Event | None = None,
+) -> Result:
+    """Simulate the goniometer measurement of one material.
+
+    Ctrl-C, or the stop button of a notebook, returns what was gathered, as a result with status
+    ``partial``; before the first rays, or pressed twice, it raises KeyboardInterrupt. In other threads than the main
+    one Python has no Ctrl-C: use ``stop``.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene, path, mapping or str
+        What to simulate: a scene, or what `load_scene` takes.
+    rays : int, optional
+        Rays per incident direction, instead of the scene's; 1e6 is as good as 1000000.
+    seed : int, optional
+        Seed of the random numbers, instead of the scene's. The same seed gives the same bits for any number of threads.
+    threads : int, optional
+        Threads to use, instead of the scene's (or of all processors).
+    progress : bool or callable, optional
+        True for a progress bar; or a function, called as ``progress(done_rays, total_rays)`` a few times a
+        second.
+    stop : threading.Event, optional
+        Once set, tracing ends within about a second.
+
+    Returns
+    -------
+    goniosim.result.Result
+        With status ``partial`` if it was ended early.
+
+    Raises
+    ------
+    goniosim.errors.ConfigError
+        The scene, or one of the other arguments, is wrong; with one line for each mistake.
+    goniosim.errors.StoppedError
+        ``stop`` was set before there was anything to keep.
+    KeyboardInterrupt
+        Ctrl-C before there was anything to keep, or pressed twice.
+
+    Examples
+    --------
+    >>> goniosim.simulate("scene.yaml", rays=1e4)
+    <Result coated (complete)
+      incident theta [deg]: 0, 60
+      classic slices of 9 x 36 cells, channels R, G, B
+      rays per direction: 1e4, seed 1
+      mean albedo: reflection/direct 0.05577, reflection/internal 0.2559 ± 0.0012>
+    """
+    scene = with_arguments(as_scene(scene), {"rays": rays, "seed": seed, "threads": threads})
+    check_stop(stop)
+    with progress_of(progress, rays_of(scene)) as shown, Stop(stop) as asked:
+        try:
+            return trace(scene, scene.material.name, shown, asked)
+        except StoppedError:
+            if asked.interrupted:
+                raise KeyboardInterrupt from None
+            raise
+
+
+def trace(scene: Scene, label: str, shown: Any, asked: Stop) -> Result:
+    """Simulate one scene; from the first rays on there may be something to keep."""
+    from .. import engine
+
+    began = False
+
+    def report(done_rays: int, total_rays: int) -> None:
+        nonlocal began
+        if not began:
+            began = asked.gathering = True
+            shown.begin(label)
+        shown.update(done_rays, total_rays)
+
+    result: Result = engine.simulate(scene, progress=report, stop=asked)
+    return result
+
+
+def rays_of(scene: Scene) -> int:
+    """Rays of all incident directions together."""
+    return len(scene.incident.theta_deg) * scene.simulation.rays
+
+
+def check_stop(stop: object) -> None:
+    """Raise a ConfigError for anything but an event."""
+    if stop is not None and not isinstance(stop, threading.Event):
+        raise ConfigError(f"stop must be a threading.Event [got {stop!r}]")

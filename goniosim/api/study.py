@@ -1,0 +1,173 @@
+"""All materials of a study, one after the other."""
+
+import contextlib
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar, overload
+
+from ..errors import FewerRaysError, OutputError, StoppedError
+from ..result import Result
+from ..scene import Scene, Source, as_scenes, with_arguments
+from ..store import look_at, reserve_output, write_result
+from ..writing import StrPath, make_folder
+from .progress import Progress, progress_of
+from .simulation import check_stop, rays_of, trace
+from .stopping import Stop
+
+Study = Iterable[Scene] | Source
+Kept = TypeVar("Kept")
+
+
+@overload
+def simulate_study(
+    study: Study,
+    *,
+    folder: None = None,
+    overwrite: bool = False,
+    rays: float | None = None,
+    seed: float | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    stop: threading.Event | None = None,
+) -> dict[str, Result]: ...
+
+
+@overload
+def simulate_study(
+    study: Study,
+    *,
+    folder: StrPath,
+    overwrite: bool = False,
+    rays: float | None = None,
+    seed: float | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    stop: threading.Event | None = None,
+) -> dict[str, Path]: ...
+
+
+def simulate_study(
+    study: Study,
+    *,
+    folder: StrPath | None = None,
+    overwrite: bool = False,
+    rays: float | None = None,
+    seed: float | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    stop: threading.Event | None = None,
+) -> dict[str, Result] | dict[str, Path]:
+    """Simulate all materials of a study.
+
+    Ctrl-C ends the study early and returns what there is: the finished materials and, if rays of it were
+    gathered, the one at work, whose status is then ``partial``. Names that are missing were not begun. With nothing at
+    all, or pressed twice, it raises KeyboardInterrupt.
+
+    Parameters
+    ----------
+    study : path, mapping, str or iterable of goniosim.scene.Scene
+        What `load_scenes` takes, or scenes.
+    folder : path-like, optional
+        Write each result into ``NAME.h5`` there as soon as it is done, instead of keeping all in memory.
+        Files that hold the rays asked for, or more, are left alone: calling again goes on.
+    overwrite : bool
+        Leave no file alone: simulate all anew, and replace whatever results stand there.
+    rays, seed, threads, progress, stop
+        As for `simulate`, and for all materials; progress is that of the whole study.
+
+    Returns
+    -------
+    dict of str to goniosim.result.Result, or of str to Path
+        By the name of the material, in the order of the study: the results, or with ``folder`` their files,
+        those left alone included.
+
+    Raises
+    ------
+    goniosim.errors.ConfigError
+        The study, or one of the other arguments, is wrong.
+    goniosim.errors.OutputError
+        A file cannot be written; found before the first ray is traced where possible.
+    goniosim.errors.StoppedError
+        ``stop`` was set before there was anything to keep.
+    KeyboardInterrupt
+        Ctrl-C before there was anything to keep, or pressed twice.
+
+    Examples
+    --------
+    >>> results = goniosim.simulate_study("study.yaml", rays=1e4)
+    >>> list(results)
+    ['coat-0.1', 'coat-0.2', 'coat-0.3']
+    >>> goniosim.simulate_study("study.yaml", rays=1e4, folder="coats")["coat-0.2"].name
+    'coat-0.2.h5'
+    """
+    given = {"rays": rays, "seed": seed, "threads": threads}
+    scenes = [with_arguments(scene, given) for scene in as_scenes(study)]
+    check_stop(stop)
+    if folder is None:
+        results: dict[str, Result] = {}
+        _run(scenes, trace, results, progress, stop)
+        return results
+    paths = {scene.material.name: Path(folder) / f"{scene.material.name}.h5" for scene in scenes}
+    make_folder(folder)
+    files = {name: paths[name] for name in ([] if overwrite else _finished(scenes, paths))}
+    todo = [scene for scene in scenes if scene.material.name not in files]
+    for scene in todo:
+        # Room is kept only for the material at work.
+        reserve_output(paths[scene.material.name], 0).release()
+    _run(todo, partial(_into_file, paths, overwrite), files, progress, stop)
+    return {name: files[name] for name in paths if name in files}
+
+
+def _run(
+    scenes: Sequence[Scene],
+    one: Callable[[Scene, str, Any, Stop], Kept],
+    kept: dict[str, Kept],
+    progress: Progress,
+    stop: threading.Event | None,
+) -> None:
+    """Add ``one(scene, label, shown, asked)`` of each scene to what is kept, until somebody asks to stop."""
+    with progress_of(progress, sum(map(rays_of, scenes))) as shown, Stop(stop) as asked:
+        asked.gathering = bool(kept)
+        for number, scene in enumerate(scenes, 1):
+            name = scene.material.name
+            try:
+                kept[name] = one(scene, f"{number}/{len(scenes)} {name}", shown, asked)
+            except StoppedError:
+                # An error only if there is nothing from the materials before it either.
+                if not kept and asked.interrupted:
+                    raise KeyboardInterrupt from None
+                if not kept:
+                    raise
+            if asked.is_set():
+                return
+
+
+def _into_file(paths: Mapping[str, Path], overwrite: bool, scene: Scene, label: str, shown: Any, asked: Stop) -> Path:
+    from ..report.simulation.forecast import file_size
+
+    path = paths[scene.material.name]
+    with reserve_output(path, file_size(scene)) as reservation:
+        result = trace(scene, label, shown, asked)
+        # Ended early it may have fewer rays than an earlier file, which then stays.
+        with contextlib.suppress(FewerRaysError):
+            write_result(result, path, overwrite=overwrite, reservation=reservation)
+    return path
+
+
+def _finished(scenes: Iterable[Scene], paths: Mapping[str, Path]) -> list[str]:
+    """Names of the scenes whose files hold the rays asked for, or more; an OutputError if one holds another scene."""
+    finished, others = [], []
+    for scene in scenes:
+        name = scene.material.name
+        found = look_at(paths[name], scene, scene.simulation.rays)
+        if found is not None and found.differences:
+            others.append(f"{paths[name]}: holds the result of another scene ({'; '.join(found.differences)})")
+        if found is not None and found.holds(scene.simulation.rays):
+            finished.append(name)
+    if others:
+        raise OutputError(
+            f"{others[0]}, so it is not overwritten; choose another folder, or overwrite=True", others[1:]
+        )
+    return finished
