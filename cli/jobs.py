@@ -81,6 +81,7 @@ def plan(scenes, output, folder):
 
 def run(jobs, progress, signals, verbose):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
+    from goniosim._jit.folder import notices
     from goniosim.report.simulation.forecast import effects_text
     from goniosim.report.simulation.losses import event_cap
     from goniosim.report.text import duration
@@ -97,6 +98,8 @@ def run(jobs, progress, signals, verbose):
             seconds = _warm_up(job.scene, progress)
             if verbose:
                 progress.note(f"{label}: kernels ready after {duration(seconds)}")
+                for notice in notices:
+                    progress.note(notice)
             try:
                 result = _simulate(job.scene, label, progress, signals)
             except StoppedError:
