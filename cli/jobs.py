@@ -143,11 +143,16 @@ def _warm_up(scene, progress):
             outcome["error"] = error
 
     thread = threading.Thread(target=compile_kernels, daemon=True)
-    thread.start()
-    thread.join(PATIENCE)
-    if thread.is_alive():
-        progress.note("preparing the kernels: compiled in the first run, taken from the cache later")
-        thread.join()
+    try:
+        thread.start()
+    except RuntimeError:
+        # The system grants no further thread.
+        compile_kernels()
+    else:
+        thread.join(PATIENCE)
+        if thread.is_alive():
+            progress.note("preparing the kernels: compiled in the first run, taken from the cache later")
+            thread.join()
     if "error" in outcome:
         raise outcome["error"]
     return outcome["seconds"]

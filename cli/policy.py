@@ -1,12 +1,12 @@
 """What the user sees of an error: a line on standard error and an exit code; with --debug, the traceback."""
 
-import os
-import sys
 import traceback
 
 import click
 
-from goniosim.errors import ConfigError, GoniosimError
+from goniosim.errors import ConfigError, GoniosimError, RefusalError
+
+from . import streams
 
 _DEBUG = "goniosim_cli.debug"
 
@@ -30,30 +30,52 @@ debug_option = click.option(
 class PolicyGroup(click.Group):
     """A group of commands that explains the errors of all of them in the same way."""
 
+    def main(self, *arguments, **options):
+        """Run the command line, whatever state the standard streams are in."""
+        with streams.guarded():
+            return super().main(*arguments, **options)
+
     def invoke(self, ctx):
         """Run a command and leave with the exit code of whatever goes wrong."""
         try:
             return super().invoke(ctx)
         except (click.exceptions.Exit, click.ClickException, click.Abort):
             raise
-        except BrokenPipeError:
-            # The reader has seen enough (`| head`). Without this, Python complains at exit about the rest.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            ctx.exit(0)
         except KeyboardInterrupt:
             say_error("interrupted")
             ctx.exit(130)
         except Exception as error:
             if ctx.meta.get(_DEBUG):
                 traceback.print_exception(error)
+            error = _understood(error)
             for line in _lines(error):
-                click.echo(line, err=True)
+                click.echo(_visible(line), err=True)
             ctx.exit(getattr(error, "exit_code", 1))
 
 
 def say_error(message):
     """Print one line on standard error."""
     click.echo(f"goniosim: {message}", err=True)
+
+
+def _visible(line):
+    """The line with what would move the cursor, or worse, written out: names of files may hold anything."""
+    return "".join(c if ord(c) > 159 or c.isprintable() else repr(c)[1:-1] for c in line)
+
+
+def _understood(error):
+    """What the operating system refuses is no bug, wherever it comes up."""
+    if isinstance(error, OSError):
+        from goniosim.writing import reason, remedy
+
+        if isinstance(error, FileNotFoundError) and error.filename is None:
+            # What `os.getcwd` says.
+            return RefusalError("the current folder is gone: change to another (cd)")
+        where = f"{error.filename}: " if error.filename is not None else ""
+        return RefusalError(f"{where}{reason(error)}; {remedy(error)}")
+    if isinstance(error, MemoryError):
+        return RefusalError("there is not enough memory; use fewer threads or smaller slices, or free some")
+    return error
 
 
 def _lines(error):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cores import available_cores
+from ..cores import available_cores, granted_threads
 from .faint import faint_weights
 from .layout import LOST_CAP
 from .plan import Plan, make_plan
@@ -57,7 +57,7 @@ class Probe:
 def probe(scene, seconds=1.0, threads=None):
     """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`."""
     plan = make_plan(scene)
-    threads = threads or scene.simulation.threads or available_cores()
+    threads = granted_threads(threads or scene.simulation.threads or available_cores())
     compile_seconds = warm_up(plan)
     directions = len(plan.theta_deg)
     faint = faint_weights(plan)

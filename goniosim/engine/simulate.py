@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..cores import available_cores
+from ..cores import available_cores, granted_threads
 from ..errors import StoppedError
 from ..integration import Pool
 from ..provenance import provenance
@@ -55,7 +55,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     overrides = [f"simulation.{key}={value}" for key, value in wanted.items() if value is not None]
     if overrides:
         scene = parse_scene(scene.to_yaml(), overrides=overrides)
-    threads = scene.simulation.threads or available_cores()
+    threads = granted_threads(scene.simulation.threads or available_cores())
     plan = make_plan(scene)
     run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)
     warm_up(plan)

@@ -8,6 +8,9 @@ from goniosim.scene.problems import closest
 from goniosim.scene.reading import read_value
 from goniosim.scene.tree import Node, Origin, Path, parse_path, show_path
 
+# Letters of an override that messages repeat.
+SHOWN = 200
+
 
 def override(root: Node, assignments: Iterable[str]) -> Node:
     """Apply overrides to the raw content of a scene or study file.
@@ -30,8 +33,9 @@ def override(root: Node, assignments: Iterable[str]) -> Node:
     """
     problems: list[str] = []
     for assignment in assignments:
-        source = f"--set {assignment}"
-        path_text, equals, value_text = str(assignment).partition("=")
+        text = str(assignment)
+        source = f"--set {text if len(text) <= SHOWN else text[: SHOWN - 3] + '...'}"
+        path_text, equals, value_text = text.partition("=")
         path = parse_path(path_text.strip())
         if path is None or not equals:
             problems.append(f"{source}: must be path=value, such as simulation.rays=1e6")

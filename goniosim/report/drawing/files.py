@@ -1,6 +1,6 @@
 """Figures as files: one look, one resolution, and the same bytes for the same figure."""
 
-from matplotlib import rc_context
+from matplotlib import rc_context, rcdefaults, rcParams
 
 from ...writing import replacing
 
@@ -40,7 +40,10 @@ def write_figure(stem, suffixes, make, *arguments):
     OutputError
     """
     written = []
-    with rc_context(STYLE):
+    with rc_context():
+        # Not what the user's settings say.
+        rcdefaults()
+        rcParams.update(STYLE)
         figure = make(*arguments)
         for suffix in suffixes:
             path = stem.with_name(f"{stem.name}.{suffix}")
