@@ -10,6 +10,7 @@ from .plot import plot
 from .policy import PolicyGroup, debug_option
 from .schema import schema
 from .simulate import simulate
+from .versions import versions
 
 
 def _show_version(ctx, param, value):
@@ -34,5 +35,5 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (simulate, check, info, plot, compare, models, schema):
+for command in (simulate, check, info, plot, compare, models, schema, versions):
     main.add_command(command)

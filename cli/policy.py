@@ -1,10 +1,12 @@
 """What the user sees of an error: a line on standard error and an exit code; with --debug, the traceback."""
 
+import sys
 import traceback
 
 import click
 
 from goniosim.errors import ConfigError, GoniosimError, RefusalError
+from goniosim.provenance import commanded
 
 from . import streams
 
@@ -30,10 +32,11 @@ debug_option = click.option(
 class PolicyGroup(click.Group):
     """A group of commands that explains the errors of all of them in the same way."""
 
-    def main(self, *arguments, **options):
+    def main(self, args=None, *arguments, **options):
         """Run the command line, whatever state the standard streams are in."""
-        with streams.guarded():
-            return super().main(*arguments, **options)
+        args = sys.argv[1:] if args is None else list(args)
+        with streams.guarded(), commanded(args):
+            return super().main(args, *arguments, **options)
 
     def invoke(self, ctx):
         """Run a command and leave with the exit code of whatever goes wrong."""

@@ -15,7 +15,7 @@
 # First, since it looks at what numba is going to read.
 from .environment import intrinsic, ir, njit, types
 from .files import keep
-from .folder import cache_folder
+from .folder import CACHE_FOLDER
 
 __all__ = ["CACHE_FOLDER", "FASTMATH", "intrinsic", "ir", "kernel", "scalar", "stage", "types"]
 
@@ -27,8 +27,6 @@ __all__ = ["CACHE_FOLDER", "FASTMATH", "intrinsic", "ir", "kernel", "scalar", "s
 # Deliberately absent: nnan and ninf. They would let the compiler delete the selects that
 # discard the NaN or Inf of a branch not taken (total internal reflection, grazing rays).
 FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
-
-CACHE_FOLDER = cache_folder()
 
 
 def scalar(function):

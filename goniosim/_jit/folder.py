@@ -169,3 +169,6 @@ def _take_over(folder):
         # Who knows what others left in it: it stays, but out of the way.
         os.rename(folder, folder.with_name(f"{folder.name}.{secrets.token_hex(4)}.untrusted"))
         os.mkdir(folder, 0o700)
+
+
+CACHE_FOLDER = cache_folder()
