@@ -8,10 +8,13 @@ import contextlib
 import errno
 import io
 import os
+import select
 import sys
 
 # As for any output that cannot be written.
 EXIT_CODE = 4
+# Seconds to wait for a reader who is slow.
+PATIENCE = 10.0
 
 
 class _Lenient(io.FileIO):
@@ -28,11 +31,11 @@ class _Lenient(io.FileIO):
             except OSError as error:
                 self.error = error
                 break
-            # A pipe that does not wait, and has no room now.
-            if written is None:
+            if written is not None:
+                rest = rest[written:]
+            # A pipe that does not wait, and has no room now: its reader may only be slow.
+            elif not select.select([], [self], [], PATIENCE)[1]:
                 self.error = BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
-                break
-            rest = rest[written:]
         return size
 
 

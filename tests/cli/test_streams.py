@@ -4,8 +4,10 @@ import errno
 import os
 import subprocess
 import sys
+import threading
 
 import pytest
+from goniosim_cli import streams
 from goniosim_cli.streams import _Lenient
 
 from goniosim.store import open_result, write_result
@@ -110,11 +112,29 @@ def test_a_stream_takes_what_it_is_given(raw):
 
 def test_the_first_error_is_kept_and_nothing_more_is_tried(raw, monkeypatch):
     _, stream = raw
+    monkeypatch.setattr(streams, "PATIENCE", 0.0)
     os.set_blocking(stream.fileno(), False)
     much = b"x" * 10_000_000
     assert stream.write(much) == len(much)
     assert stream.error.errno == errno.EAGAIN
     assert stream.write(b"more") == 4
+
+
+def test_a_slow_reader_gets_everything(raw):
+    reading, stream = raw
+    os.set_blocking(stream.fileno(), False)
+    much = bytes(range(256)) * 2000
+    got = []
+
+    def read():
+        while sum(map(len, got)) < len(much):
+            got.append(os.read(reading, 65536))
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    assert stream.write(much) == len(much)
+    reader.join()
+    assert b"".join(got) == much and stream.error is None
 
 
 def test_messages_hold_no_control_characters(goniosim, folder):

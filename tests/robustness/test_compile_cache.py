@@ -4,6 +4,8 @@ import errno
 import os
 import pickle
 import shutil
+import subprocess
+import sys
 
 import pytest
 from numba import njit
@@ -134,3 +136,49 @@ def test_a_folder_that_vanishes_costs_nothing(tmp_path, notices):
     assert list(tmp_path.iterdir()) == []
     files.keep(compiled, tmp_path / "cache")
     assert compiled(1) == 2 and len(notices) == 2
+
+
+SCENE = """\
+material:
+  name: small
+  layers:
+    - interface: {type: dielectric, eta: 1.5, alpha: 0.2}
+    - interface: {type: lambert, rho: 0.5}
+incident: {theta_deg: [30]}
+slice: {rows: 6, columns: 12}
+simulation: {rays: 1e4}
+"""
+
+
+@pytest.mark.slow
+def test_a_cache_that_was_cut_to_nothing_fills_again(tmp_path):
+    """The whole command; two of them fill the cache at the same time."""
+    (tmp_path / "scene.yaml").write_text(SCENE)
+
+    def run(*outputs):
+        code = "from goniosim_cli.main import main; main()"
+        processes = [
+            subprocess.Popen(
+                [sys.executable, "-c", code, "simulate", "scene.yaml", "-o", output],
+                cwd=tmp_path,
+                env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")},
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            for output in outputs
+        ]
+        noted = [process.communicate(timeout=500)[1] for process in processes]
+        assert [process.returncode for process in processes] == [0] * len(outputs)
+        return noted
+
+    run("a.h5", "b.h5")
+    kept = [path for path in (tmp_path / "cache").rglob("*") if path.suffix in (".nbi", ".nbc")]
+    assert len(kept) > 4
+    assert run("c.h5") == [""]
+    for path in kept:
+        path.write_bytes(b"")
+    (noted,) = run("d.h5")
+    assert "preparing the kernels" in noted
+    assert run("e.h5") == [""]
+    assert all(path.stat().st_size for path in kept)
