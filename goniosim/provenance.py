@@ -56,7 +56,8 @@ def commanded(arguments: Sequence[str]) -> Iterator[None]:
     arguments : sequence of str
         Without the name of the program.
     """
-    command = shlex.join(["goniosim", *arguments])
+    # Names of files may be no text at all, and what is kept here goes into text files too.
+    command = shlex.join(["goniosim", *arguments]).encode("utf-8", "backslashreplace").decode()
     _commands.append(command if len(command) <= LONGEST_COMMAND else f"{command[:LONGEST_COMMAND]} ...")
     try:
         yield

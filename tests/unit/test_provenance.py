@@ -64,6 +64,8 @@ def test_the_command_is_one_that_a_shell_understands():
     arguments = ["simulate", "my scene.yaml", "--set", "material.layers[0].interface.alpha=0.1"]
     with provenance.commanded(arguments):
         assert shlex.split(provenance.provenance(1)["command"]) == ["goniosim", *arguments]
+    with provenance.commanded(["compare", "caf\udce9.h5"]):
+        assert provenance.provenance(1)["command"] == r"goniosim compare 'caf\udce9.h5'"
     with provenance.commanded(["x" * 100_000]):
         assert len(provenance.provenance(1)["command"]) < 3000
     assert "command" not in provenance.provenance(1)
