@@ -44,7 +44,7 @@ def read_file(path: str | os.PathLike[str]) -> Node:
     except IsADirectoryError:
         raise ConfigError(f"{source}: is a folder: give the scene file in it") from None
     except OSError as error:
-        raise ConfigError(f"{source}: cannot be read: {error.strerror}: check the path and its permissions") from None
+        raise ConfigError(f"{source}: cannot be read: {error.strerror}") from None
     if len(content) > MAX_BYTES:
         raise ConfigError(f"{source}: is larger than 16 MB: this is not a scene file")
     try:
