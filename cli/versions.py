@@ -9,7 +9,7 @@ from .policy import debug_option
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON, for programs.")
 @debug_option
 def versions(as_json):
-    """Show all versions, the machine, the compiler and its cache, for a bug report."""
+    """Show what a bug report needs: versions, machine, compiler."""
     import json
 
     from goniosim.report import versions

@@ -47,7 +47,7 @@ def test_the_public_names_are_there_and_no_others():
 def test_every_command_is_listed_with_a_whole_sentence(goniosim):
     code, out, _ = goniosim("--help")
     assert code == 0
-    for command in ("simulate", "check", "info", "plot", "schema"):
+    for command in ("simulate", "check", "info", "plot", "schema", "versions"):
         (line,) = [line for line in out.splitlines() if line.strip().startswith(command + " ")]
         assert line.endswith(".")
         assert not line.endswith("...")

@@ -115,6 +115,13 @@ def test_without_a_thread_a_simulation_is_refused(goniosim, folder, few_threads)
     _refused(goniosim("simulate", "scene.yaml", "-q"), 9, "the system starts no thread")
 
 
+def test_why_compiled_code_is_not_kept_is_said_to_those_who_ask(goniosim, folder, monkeypatch):
+    monkeypatch.setattr("goniosim._jit.folder.notices", ["compiled code is not kept in /x: others may change /x"])
+    for verbose in (False, True):
+        code, _, err = goniosim("simulate", "scene.yaml", "--rays", "1e3", *["-v"] * verbose)
+        assert code == 0 and ("others may change /x" in err) == verbose
+
+
 def _draw(path):
     from matplotlib.figure import Figure
 
