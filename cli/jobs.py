@@ -180,6 +180,7 @@ def require_room(scenes, output, many):
 
 def run(jobs, progress, signals, verbose, overwrite=False):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
+    from goniosim._jit.folder import notices
     from goniosim.report.simulation.forecast import effects_text
     from goniosim.report.simulation.losses import event_cap
     from goniosim.report.text import duration
@@ -196,6 +197,8 @@ def run(jobs, progress, signals, verbose, overwrite=False):
             seconds = _warm_up(job.scene, progress)
             if verbose:
                 progress.note(f"{label}: kernels ready after {duration(seconds)}")
+                for notice in notices:
+                    progress.note(notice)
             try:
                 result = _simulate(job.scene, label, progress, signals)
             except StoppedError:
@@ -245,11 +248,16 @@ def _warm_up(scene, progress):
             outcome["error"] = error
 
     thread = threading.Thread(target=compile_kernels, daemon=True)
-    thread.start()
-    thread.join(PATIENCE)
-    if thread.is_alive():
-        progress.note("preparing the kernels: compiled in the first run, taken from the cache later")
-        thread.join()
+    try:
+        thread.start()
+    except RuntimeError:
+        # The system grants no further thread.
+        compile_kernels()
+    else:
+        thread.join(PATIENCE)
+        if thread.is_alive():
+            progress.note("preparing the kernels: compiled in the first run, taken from the cache later")
+            thread.join()
     if "error" in outcome:
         raise outcome["error"]
     return outcome["seconds"]

@@ -11,6 +11,7 @@ from .plot import plot
 from .policy import PolicyGroup, debug_option
 from .schema import schema
 from .simulate import simulate
+from .versions import versions
 
 
 def _show_version(ctx, param, value):
@@ -38,6 +39,7 @@ Exit codes:
   6    the file is damaged
   7    the file is of a newer goniosim
   8    the result cannot be used for what was asked
+  9    the operating system or an environment variable stands in the way
   130  stopped by Ctrl-C; what was gathered is in the output file
   143  stopped by SIGTERM; what was gathered is in the output file
 """
@@ -57,5 +59,5 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (init, simulate, check, info, plot, compare, models, schema):
+for command in (init, simulate, check, info, plot, compare, models, schema, versions):
     main.add_command(command)

@@ -31,6 +31,11 @@ class Real(click.ParamType):
             self.fail(f"{value!r} is not a number such as 22.5", param, ctx)
 
 
+# 2^64 has as many. What a number may be is said where its meaning is known.
+MOST_DIGITS = 20
+SHOWN = 40
+
+
 class Count(click.ParamType):
     """A whole number that may be written as ``1e7``."""
 
@@ -45,9 +50,18 @@ class Count(click.ParamType):
             number = Decimal(value)
         except InvalidOperation:
             number = None
-        if number is None or not number.is_finite() or number != int(number) or number < 0:
-            self.fail(f"{value!r} is not a whole number such as 10000000 or 1e7", param, ctx)
+        if number is None or not number.is_finite() or number < 0:
+            self._fail(value, "is not a whole number such as 10000000 or 1e7", param, ctx)
+        # Looked at before it is written out with all its digits, of which there may be a billion.
+        if number.adjusted() >= MOST_DIGITS:
+            self._fail(value, f"is too large: {MOST_DIGITS} digits are the most", param, ctx)
+        if number.adjusted() < -MOST_DIGITS and number or number != int(number):
+            self._fail(value, "is not a whole number such as 10000000 or 1e7", param, ctx)
         return int(number)
+
+    def _fail(self, value, message, param, ctx):
+        shown = value if len(value) <= SHOWN else f"{value[:SHOWN]}..."
+        self.fail(f"{shown!r} {message}", param, ctx)
 
 
 class FileName(click.ParamType):

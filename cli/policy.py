@@ -1,13 +1,14 @@
 """What the user sees of an error: a line on standard error and an exit code; with --debug, the traceback."""
 
-import os
 import sys
 import traceback
 
 import click
 
-from goniosim.errors import ConfigError, GoniosimError, ResourceError
+from goniosim.errors import ConfigError, GoniosimError, RefusalError, ResourceError
+from goniosim.provenance import commanded
 
+from . import streams
 from .hints import HintingGroup
 
 _DEBUG = "goniosim_cli.debug"
@@ -32,31 +33,53 @@ debug_option = click.option(
 class PolicyGroup(HintingGroup):
     """A group of commands that explains the errors of all of them in the same way."""
 
+    def main(self, args=None, *arguments, **options):
+        """Run the command line, whatever state the standard streams are in."""
+        args = sys.argv[1:] if args is None else list(args)
+        with streams.guarded(), commanded(args):
+            return super().main(args, *arguments, **options)
+
     def invoke(self, ctx):
         """Run a command and leave with the exit code of whatever goes wrong."""
         try:
             return super().invoke(ctx)
         except (click.exceptions.Exit, click.ClickException, click.Abort):
             raise
-        except BrokenPipeError:
-            # The reader has seen enough (`| head`). Without this, Python complains at exit about the rest.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            ctx.exit(0)
         except KeyboardInterrupt:
             say_error("interrupted")
             ctx.exit(130)
         except Exception as error:
             if ctx.meta.get(_DEBUG):
                 traceback.print_exception(error)
+            error = _understood(error)
             for line in _lines(error):
-                click.echo(line, err=True)
-            code = ResourceError.exit_code if isinstance(error, MemoryError) else 1
-            ctx.exit(getattr(error, "exit_code", code))
+                click.echo(_visible(line), err=True)
+            ctx.exit(getattr(error, "exit_code", 1))
 
 
 def say_error(message):
     """Print one line on standard error."""
     click.echo(f"goniosim: {message}", err=True)
+
+
+def _visible(line):
+    """The line with what would move the cursor, or worse, written out: names of files may hold anything."""
+    return "".join(c if ord(c) > 159 or c.isprintable() else repr(c)[1:-1] for c in line)
+
+
+def _understood(error):
+    """What the operating system refuses is no bug, wherever it comes up."""
+    if isinstance(error, OSError):
+        from goniosim.writing import reason, remedy
+
+        if isinstance(error, FileNotFoundError) and error.filename is None:
+            # What `os.getcwd` says.
+            return RefusalError("the current folder is gone: change to another (cd)")
+        where = f"{error.filename}: " if error.filename is not None else ""
+        return RefusalError(f"{where}{reason(error)}; {remedy(error)}")
+    if isinstance(error, MemoryError):
+        return ResourceError("memory ran out; close other programs, or give fewer or smaller files at a time")
+    return error
 
 
 def _lines(error):
@@ -65,8 +88,6 @@ def _lines(error):
         return [*error.problems, f"goniosim: error: {n} mistake{'s' if n > 1 else ''}"]
     if isinstance(error, GoniosimError):
         return [*getattr(error, "details", ()), f"goniosim: error: {error}"]
-    if isinstance(error, MemoryError):
-        return ["goniosim: error: memory ran out; close other programs, or give fewer or smaller files at a time"]
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     what = " ".join(what.split())
     return [f"goniosim: error: {what} - this is a bug in goniosim; rerun with --debug to see where"]

@@ -97,5 +97,6 @@ class StopSignals:
         # No exception: the compiler's threads would hold it up, and a destructor might swallow it.
         if self.reservation is not None:
             self.reservation.release()
-        os.write(2, f"\ngoniosim: stopped by {self.name} {when}\n".encode())
+        with contextlib.suppress(OSError):
+            os.write(2, f"\ngoniosim: stopped by {self.name} {when}\n".encode())
         os._exit(self.exit_code)

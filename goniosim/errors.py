@@ -18,6 +18,7 @@ code  meaning
 6     the file is a goniosim result, but damaged
 7     the file was written by a newer, incompatible goniosim
 8     the result cannot be used for what was asked
+9     the operating system or an environment variable stands in the way
 130   stopped by Ctrl-C; what was gathered is in the output file
 143   stopped by SIGTERM; what was gathered is in the output file
 ====  =========================================================
@@ -119,3 +120,9 @@ class UnusableResultError(GoniosimError):
     """The file is sound, but it lacks what the command needs."""
 
     exit_code = 8
+
+
+class RefusalError(GoniosimError):
+    """The operating system refuses something, or an environment variable makes it impossible."""
+
+    exit_code = 9

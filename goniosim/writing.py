@@ -12,6 +12,19 @@ from .parts import Part, remove_dead
 StrPath = str | os.PathLike[str]
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+_REMEDIES = {
+    **dict.fromkeys(NO_ROOM, "free some space, raise the quota or the limit on file sizes, or choose another place"),
+    errno.ENAMETOOLONG: "choose a shorter name",
+    errno.ELOOP: "mend the links, which lead in a circle, or choose another place",
+    errno.ENOTDIR: "choose another place: what stands before the last / must be a folder",
+    errno.EISDIR: "choose another name: a folder is called so",
+    errno.EEXIST: "choose another place: something that is no folder is called so",
+    errno.ENOENT: "check that the folder is there, or choose another place",
+    errno.EMFILE: "raise the limit on open files (ulimit -n)",
+    errno.ENFILE: "close other programs: too many files are open in the whole system",
+    errno.EAGAIN: "raise the limit on processes and threads (ulimit -u), or use fewer threads",
+    errno.ENOMEM: "free some memory, raise the limit on it, or use fewer threads",
+}
 
 
 def make_folder(folder: StrPath) -> None:
@@ -28,14 +41,18 @@ def make_folder(folder: StrPath) -> None:
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{folder}: the folder cannot be created: {error.strerror}; choose another place") from error
+        raise OutputError(f"{folder}: the folder cannot be created: {reason(error)}; {remedy(error)}") from error
 
 
 def remedy(error: OSError) -> str:
     """What to do about an error of the operating system."""
-    if error.errno in NO_ROOM:
-        return "free some space, raise the quota or the limit on file sizes, or choose another place"
-    return "check the permissions, or choose another place"
+    return _REMEDIES.get(error.errno or 0, "check the permissions, or choose another place")
+
+
+def reason(error: OSError) -> str:
+    """What the operating system says, in one line."""
+    # The errors of HDF5 have a text, but no number.
+    return error.strerror or " ".join(str(error).split())
 
 
 @contextlib.contextmanager
@@ -44,9 +61,7 @@ def explained(path: StrPath) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        # The errors of HDF5 have a text, but no number.
-        reason = error.strerror or " ".join(str(error).split())
-        raise OutputError(f"{path}: cannot be written: {reason}; {remedy(error)}") from error
+        raise OutputError(f"{path}: cannot be written: {reason(error)}; {remedy(error)}") from error
 
 
 class Replacement:

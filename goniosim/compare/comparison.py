@@ -201,7 +201,8 @@ def result_files(path: StrPath) -> tuple[list[Path], list[Path]]:
         A folder without result files.
     """
     path = Path(os.fspath(path))
-    if not path.is_dir():
+    # Not `is_dir`, which fails on a name that is too long; a file that cannot be opened is explained by its reader.
+    if not os.path.isdir(path):
         return [path], []
     found = sorted(path.glob("*.h5"))
     passed_over = [file for file in found if is_models_file(file)]

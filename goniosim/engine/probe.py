@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..cores import granted_threads
 from .faint import faint_weights
 from .layout import LOST_CAP
 from .memory import threads_of
@@ -57,7 +58,7 @@ class Probe:
 def probe(scene, seconds=1.0):
     """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`."""
     plan = make_plan(scene)
-    threads = threads_of(scene)
+    threads = granted_threads(threads_of(scene))
     compile_seconds = warm_up(plan)
     directions = len(plan.theta_deg)
     faint = faint_weights(plan)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..cores import granted_threads
 from ..errors import ResourceError, StoppedError
 from ..integration import Pool
 from ..provenance import provenance
@@ -56,7 +57,7 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     scene = with_arguments(scene, {"rays": rays, "seed": seed, "threads": threads})
     require_memory(scene)
     try:
-        return _simulate(scene, make_plan(scene), threads_of(scene), progress, stop)
+        return _simulate(scene, make_plan(scene), granted_threads(threads_of(scene)), progress, stop)
     except MemoryError as error:
         raise ResourceError(
             "memory ran out: another process took it, or a limit is lower than it looks; "

@@ -2,7 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
-from ..cores import available_cores
+from ..cores import available_cores, granted_threads
 
 # Directions evaluated at a time: their arrays fit in a core's own cache.
 BLOCK = 4096
@@ -18,7 +18,7 @@ class Pool(ThreadPoolExecutor):
     """
 
     def __init__(self, threads=None):
-        self.threads = threads or available_cores()
+        self.threads = granted_threads(threads or available_cores())
         super().__init__(self.threads, thread_name_prefix="integration")
 
     def in_blocks(self, work, n, step):

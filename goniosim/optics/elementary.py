@@ -7,11 +7,8 @@ short polynomials without branches, accurate to a few 1e-15 in the ranges given.
 import math
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
 
-from .._jit import scalar
+from .._jit import intrinsic, ir, scalar, types
 
 TWO_PI = 2.0 * math.pi
 _HALF_PI = 0.5 * math.pi

@@ -8,6 +8,9 @@ from goniosim.scene.problems import closest
 from goniosim.scene.reading import read_value
 from goniosim.scene.tree import Node, Origin, Path, parse_path, show_path
 
+# Letters of an override that messages repeat.
+SHOWN = 200
+
 
 @dataclass(frozen=True)
 class Override:
@@ -47,7 +50,7 @@ def override(root: Node, assignments: Iterable[str | Override]) -> Node:
     problems: list[str] = []
     for each in assignments:
         change = each if isinstance(each, Override) else Override(str(each), f"override {each}")
-        source = change.shown
+        source = change.shown if len(change.shown) <= SHOWN else change.shown[: SHOWN - 3] + "..."
         path_text, equals, value_text = change.assignment.partition("=")
         path = parse_path(path_text.strip())
         if path is None or not equals:

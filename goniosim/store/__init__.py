@@ -1,5 +1,7 @@
 """Result files: the one place that knows HDF5. `data_schema.md` describes the format."""
 
+from h5py.version import hdf5_version
+
 from goniosim.store.datatree import to_datatree
 from goniosim.store.keeping import Standing, look_at, refuse_newer
 from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_be_models_file, open_models
@@ -13,6 +15,7 @@ __all__ = [
     "ModelsWriter",
     "Reservation",
     "Standing",
+    "hdf5_version",
     "is_models_file",
     "look_at",
     "may_be_models_file",

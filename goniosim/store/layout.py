@@ -131,7 +131,7 @@ ATTRIBUTES = (
     Attribute("/", "seed", "uint64", "seed of the random numbers"),
     Attribute("/", "status", "text", "`complete`, or `partial` after an interruption"),
     Attribute("/", "name", "text", "name of the material"),
-    Attribute("/", "PROVENANCE", "text", "any further text: versions, processor, threads"),
+    Attribute("/", "PROVENANCE", "text", "any further text: versions, git revision, command line, machine, threads"),
     Attribute("cells", "parametrization", "text", "`classic` or `half`"),
     Attribute("COMPONENT", "contains_delta", "int8", "1 if some energy leaves in exactly one direction"),
     Attribute("effects", "EFFECT", "int8", "1 if the scene called for the effect, 0 if not"),

@@ -125,7 +125,10 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     """
     # A link stays a link: the file it names is the one to replace.
     target = Path(os.path.realpath(path))
-    _refuse_to_destroy(target, path)
+    with explained(path):
+        if target.is_symlink():
+            raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
+        _refuse_to_destroy(target, path)
     if not target.parent.is_dir():
         what = "is not a folder" if target.parent.exists() else "does not exist"
         raise OutputError(f"{path}: the folder {target.parent} {what}; create it, or choose another place")

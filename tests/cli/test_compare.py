@@ -137,6 +137,7 @@ def test_errors_json_has_units_provenance_and_the_same_rows(report):
     assert data["filetype"] == "goniosim-errors"
     assert data["columns"]["rmse"]["unit"] == "sr-0.5" and set(data["columns"]) == set(COLUMNS)
     assert data["provenance"]["subcells"] == "9"
+    assert data["provenance"]["command"].startswith("goniosim compare ") and data["provenance"]["processor"]
     assert {source["material"] for source in data["results"]} == {"metal", "synthetic"}
     table = read_csv(report[0] / "errors.csv")
     assert len(data["errors"]) == len(table)

@@ -28,6 +28,7 @@ def result_file(folder):
         (errors.DamagedFileError, 6),
         (errors.NewerSchemaError, 7),
         (errors.UnusableResultError, 8),
+        (errors.RefusalError, 9),
     ],
 )
 def test_known_errors_are_one_line_with_their_own_code(goniosim, monkeypatch, error, code):
@@ -70,6 +71,24 @@ def test_a_number_of_rays_that_is_none_is_2(goniosim, folder, number):
     code, _, err = goniosim("simulate", "scene.yaml", f"--rays={number}")
     assert code == 2
     assert "is not a whole number such as 10000000 or 1e7" in err
+
+
+@pytest.mark.parametrize("option", ["--rays", "--seed"])
+@pytest.mark.parametrize("number", ["1e99999999", "0e99999999", "9" * 5000])
+def test_a_number_too_large_to_write_out_is_refused_at_once(goniosim, folder, option, number):
+    code, _, err = goniosim("simulate", "scene.yaml", option, number)
+    assert code == 2
+    assert "is too large" in err and len(err) < 500
+
+
+@pytest.mark.parametrize("number", ["1e99999999", "9" * 5000, "0x" + "f" * 5000, ".inf", str(2**63)])
+def test_such_a_number_in_a_scene_is_3(goniosim, folder, number):
+    text = (folder / "scene.yaml").read_text().replace("rays: 1e4", f"rays: {number}")
+    (folder / "large.yaml").write_text(text)
+    for arguments in (["large.yaml"], ["scene.yaml", "--set", f"simulation.rays={number}"]):
+        code, _, err = goniosim("check", *arguments)
+        assert code == 3
+        assert err.splitlines()[-1] == "goniosim: error: 1 mistake" and len(err) < 1000
 
 
 def test_output_that_cannot_be_written_is_4_before_anything_is_traced(goniosim, folder, monkeypatch):

@@ -2,9 +2,9 @@
 
 import io
 
-from matplotlib import figure, rc_context
+from matplotlib import figure
 
-from .files import STYLE
+from .files import own_style
 
 
 class Figure(figure.Figure):
@@ -12,7 +12,7 @@ class Figure(figure.Figure):
 
     def draw(self, renderer):
         """Draw with the style that it was made with: ticks are made only now."""
-        with rc_context(STYLE):
+        with own_style():
             super().draw(renderer)
 
     def _repr_png_(self):
@@ -24,5 +24,5 @@ class Figure(figure.Figure):
 
 def styled(make, *arguments):
     """Draw ``make(*arguments)``, a `Figure`, in the style of the files."""
-    with rc_context(STYLE):
+    with own_style():
         return make(*arguments)

@@ -1,9 +1,10 @@
 """Figures as files: one look, one resolution, and the same bytes for the same figure."""
 
+import contextlib
 import re
 from pathlib import Path
 
-from matplotlib import rc_context
+from matplotlib import rc_context, rcdefaults, rcParams
 
 from ...errors import OutputError
 from ...writing import replacing
@@ -34,6 +35,15 @@ _MARKS = {
 }
 
 
+@contextlib.contextmanager
+def own_style():
+    """While active, figures look as those of goniosim do, whatever the user's settings say."""
+    with rc_context():
+        rcdefaults()
+        rcParams.update(STYLE)
+        yield
+
+
 def write_figure(stem, suffixes, make, *arguments):
     """Draw a figure and write it, whole or not at all.
 
@@ -55,7 +65,7 @@ def write_figure(stem, suffixes, make, *arguments):
     OutputError
     """
     written = []
-    with rc_context(STYLE):
+    with own_style():
         figure = make(*arguments)
         for suffix in suffixes:
             path = stem.with_name(f"{stem.name}.{suffix}")

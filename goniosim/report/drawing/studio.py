@@ -1,5 +1,6 @@
 """Drawing in processes of their own: matplotlib keeps to one core, and a study has hundreds of figures."""
 
+import contextlib
 import multiprocessing
 import os
 import signal
@@ -28,7 +29,9 @@ class Studio:
         if processes > 1:
             methods = multiprocessing.get_all_start_methods()
             context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-            self._pool = ProcessPoolExecutor(min(processes, MOST_PROCESSES), context, _prepare)
+            # Where the system lacks what processes share (/dev/shm, a folder for sockets), it is drawn here.
+            with contextlib.suppress(OSError, ImportError, NotImplementedError):
+                self._pool = ProcessPoolExecutor(min(processes, MOST_PROCESSES), context, _prepare)
 
     def draw(self, figures):
         """Draw and write figures, and wait for them.
@@ -47,7 +50,7 @@ class Studio:
         OutputError
         """
         if self._pool is None:
-            return [path for figure in figures for path in write_figure(*figure)]
+            return _draw_here(figures)
         try:
             drawn = [self._pool.submit(_draw, *figure) for figure in figures]
             return [path for each in drawn for path in each.result()]
@@ -56,11 +59,20 @@ class Studio:
                 "the figures cannot be drawn: a process that draws was ended, perhaps for want of memory; "
                 "rerun with fewer figures"
             ) from error
+        except (OSError, RuntimeError):
+            # The system grants no further process or thread.
+            self.close()
+            self._pool = None
+            return _draw_here(figures)
 
     def close(self):
         """End the processes; figures that nobody waits for are not begun."""
         if self._pool is not None:
             self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _draw_here(figures):
+    return [path for figure in figures for path in write_figure(*figure)]
 
 
 _interrupted = threading.Event()

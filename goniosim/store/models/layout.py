@@ -34,7 +34,9 @@ ATTRIBUTES = (
     Attribute("/", "goniosim_version", "text", "version of the program that wrote the file"),
     Attribute("/", "created_utc", "text", "time of the comparison, ISO 8601"),
     Attribute("/", "materials", "text", "names of the materials, one in a line"),
-    Attribute("/", "PROVENANCE", "text", "any further text: versions, processor, threads, sub-cells"),
+    Attribute(
+        "/", "PROVENANCE", "text", "any further text: versions, git revision, command line, machine, threads, sub-cells"
+    ),
     Attribute("MATERIAL", "name", "text", "name of the material"),
     Attribute("MATERIAL", "config_yaml", "text", "the scene of the result that was compared"),
     Attribute("MATERIAL", "config_yaml_sha256", "text", "SHA-256 of config_yaml, hexadecimal"),
