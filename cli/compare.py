@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from .policy import debug_option
+from .policy import debug_option, say
 from .signals import tidied_up
 
 
@@ -58,20 +58,20 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
     compare_report.check_headers(paths, allow_partial)
     folder = Path(output or f"{Path(results).resolve().stem}-comparison")
 
-    def say(message):
+    def report_on(message):
         if not quiet:
-            click.echo(message, err=True)
+            say(message, err=True)
 
     for path in passed_over:
-        say(f"{path}: holds integrated models, not a result; stepped over")
+        report_on(f"{path}: holds integrated models, not a result; stepped over")
     made = compare_report.Report(folder, request, subcells, figures)
     with tidied_up(), contextlib.closing(made) as report:
         for number, path in enumerate(paths, 1):
-            report.add(path, lambda message, n=number: say(f"{n}/{len(paths)} {message}"))
+            report.add(path, lambda message, n=number: report_on(f"{n}/{len(paths)} {message}"))
         text = report.finish()
     if not quiet:
-        click.echo(text)
-        click.echo(f"\n{folder}")
+        say(text)
+        say(f"\n{folder}")
 
 
 def _names(models):

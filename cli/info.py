@@ -2,7 +2,7 @@
 
 import click
 
-from .policy import debug_option
+from .policy import debug_option, say
 
 
 @click.command()
@@ -20,14 +20,15 @@ def info(file, as_json):
 
     from goniosim.report import text
     from goniosim.store import may_be_models_file
+    from goniosim.writing import printable
 
     show = _models if may_be_models_file(file) else _result
     if as_json:
         click.echo(json.dumps(show(file, as_json), indent=1, allow_nan=False))
     else:
         description = show(file, as_json)
-        click.echo(f"{file}  ({text.size(os.path.getsize(file))})")
-        click.echo(description)
+        say(f"{printable(file)}  ({text.size(os.path.getsize(file))})")
+        say(description)
 
 
 def _result(file, as_json):
@@ -43,5 +44,4 @@ def _models(file, as_json):
     from goniosim.store import open_models
 
     with open_models(file) as models:
-        models.verify()
         return summary.as_data(models) if as_json else summary.description(models)

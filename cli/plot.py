@@ -2,7 +2,7 @@
 
 import click
 
-from .policy import debug_option
+from .policy import debug_option, say
 
 
 @click.command()
@@ -47,7 +47,7 @@ def plot(file, output, suffix, theta, materials, models):
     else:
         draw = _draw_result
     for path in draw(file, Path(output), Path(file).stem, options):
-        click.echo(path)
+        say(path)
 
 
 def _draw_result(file, folder, stem, options):

@@ -3,10 +3,12 @@
 import os
 import sys
 import traceback
+import warnings
 
 import click
 
-from goniosim.errors import ConfigError, GoniosimError
+from goniosim.errors import AnnotatedFileWarning, ConfigError, GoniosimError
+from goniosim.writing import printable
 
 _DEBUG = "goniosim_cli.debug"
 
@@ -33,7 +35,9 @@ class PolicyGroup(click.Group):
     def invoke(self, ctx):
         """Run a command and leave with the exit code of whatever goes wrong."""
         try:
-            return super().invoke(ctx)
+            with warnings.catch_warnings():
+                _say_what_was_annotated()
+                return super().invoke(ctx)
         except (click.exceptions.Exit, click.ClickException, click.Abort):
             raise
         except BrokenPipeError:
@@ -47,13 +51,31 @@ class PolicyGroup(click.Group):
             if ctx.meta.get(_DEBUG):
                 traceback.print_exception(error)
             for line in _lines(error):
-                click.echo(line, err=True)
+                click.echo(printable(line), err=True)
             ctx.exit(getattr(error, "exit_code", 1))
 
 
 def say_error(message):
     """Print one line on standard error."""
-    click.echo(f"goniosim: {message}", err=True)
+    click.echo(f"goniosim: {printable(message)}", err=True)
+
+
+def say(text, err=False):
+    """Print text that may hold names from files: whatever a terminal would obey is written out."""
+    click.echo("\n".join(map(printable, str(text).split("\n"))), err=err)
+
+
+def _say_what_was_annotated():
+    usual = warnings.showwarning
+
+    def show(message, category, *place):
+        if issubclass(category, AnnotatedFileWarning):
+            say_error(f"note: {message}")
+        else:
+            usual(message, category, *place)
+
+    warnings.simplefilter("always", AnnotatedFileWarning)
+    warnings.showwarning = show
 
 
 def _lines(error):

@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from .options import Count, set_option
-from .policy import debug_option
+from .policy import debug_option, say
 from .signals import StopSignals
 
 
@@ -53,6 +53,6 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, quiet, verbose
         for job, result in jobs.run(todo, progress, signals, verbose):
             done.append(study.row(result, job.path) if many else summary(result, job.path))
     if done and not quiet:
-        click.echo(study.study_text(done) if many else done[0])
+        say(study.study_text(done) if many else done[0])
     if signals.signum is not None:
         ctx.exit(signals.exit_code)

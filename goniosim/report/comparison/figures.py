@@ -1,5 +1,6 @@
 """All figures of a comparison, written as PNG and SVG."""
 
+from ...writing import file_name
 from . import entries
 from .cost import cost_figure
 from .errors import errors_figure
@@ -28,9 +29,9 @@ def material_figures(comparison, folder, extent="all"):
         return []
     name, component = comparison.result.name, comparison.components[0]
     seen = [entries.of_comparison(comparison, number) for number in range(len(comparison.result.theta_deg))]
-    figures = overviews(name, component, seen, folder / name, FORMATS)
+    figures = overviews(name, component, seen, folder / file_name(name), FORMATS)
     if extent == "all":
-        figures += single_directions(name, component, seen, folder / name, FORMATS)
+        figures += single_directions(name, component, seen, folder / file_name(name), FORMATS)
     return figures
 
 
