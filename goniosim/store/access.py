@@ -38,13 +38,18 @@ def node(root: h5py.Group, path: str) -> h5py.Group | h5py.Dataset:
     found = root
     for name in path.split("/") if path else ():
         if not isinstance(found, h5py.Group) or not has(found, name):
-            raise ValueError(f"{path} is missing")
+            raise ValueError(f"{_below(found, name)} is missing")
         if found.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
-            raise ValueError(f"{path} is a link that leads elsewhere")
-        found = found[name]
-    if not isinstance(found, h5py.Group | h5py.Dataset):
-        raise ValueError(f"{path} is neither a group nor a dataset")
+            raise ValueError(f"{_below(found, name)} is a link that leads elsewhere")
+        below = found[name]
+        if not isinstance(below, h5py.Group | h5py.Dataset):
+            raise ValueError(f"{_below(found, name)} is neither a group nor a dataset")
+        found = below
     return found
+
+
+def _below(owner: h5py.Group | h5py.Dataset, name: str) -> str:
+    return f"{owner.name}/{name}".lstrip("/")
 
 
 def group(root: h5py.Group, path: str) -> h5py.Group:
@@ -70,7 +75,10 @@ def has_attribute(owner: h5py.Group | h5py.Dataset, name: str) -> bool:
 
 def is_plain(owner: h5py.Group | h5py.Dataset, name: str) -> bool:
     """Whether an attribute is a single text of fixed length, or a single whole number."""
-    found = h5py.h5a.open(owner.id, name.encode())
+    return _is_plain(h5py.h5a.open(owner.id, name.encode()))
+
+
+def _is_plain(found: h5py.h5a.AttrID) -> bool:
     kind = found.get_type()
     is_text = isinstance(kind, h5py.h5t.TypeStringID) and not kind.is_variable_str()
     return found.shape == () and (is_text or isinstance(kind, h5py.h5t.TypeIntegerID)) and kind.get_size() <= MAX_TEXT
@@ -78,13 +86,16 @@ def is_plain(owner: h5py.Group | h5py.Dataset, name: str) -> bool:
 
 def attribute(owner: h5py.Group | h5py.Dataset, name: str) -> str | int:
     """An attribute: a single text of fixed length, or a single whole number."""
-    where = f"the attribute {name} of {owner.name}"
     if not has_attribute(owner, name):
-        raise ValueError(f"{where} is missing")
-    if not is_plain(owner, name):
-        raise ValueError(f"{where} is neither a text of fixed length, below 16 MB, nor a whole number")
-    value = owner.attrs[name]
-    return value.decode() if isinstance(value, bytes) else int(value)
+        raise ValueError(f"the attribute {name} of {owner.name} is missing")
+    found = h5py.h5a.open(owner.id, name.encode())
+    if not _is_plain(found):
+        raise ValueError(
+            f"the attribute {name} of {owner.name} is neither a text of fixed length, below 16 MB, nor a whole number"
+        )
+    value = np.empty((), found.dtype)
+    found.read(value)
+    return value.item().decode() if value.dtype.kind == "S" else int(value)
 
 
 def text(owner: h5py.Group | h5py.Dataset, name: str) -> str:

@@ -42,7 +42,7 @@ def build(file: h5py.File) -> bytes:
     entries: dict[str, Entry] = {}
     places: dict[int, str] = {}
     for path, node in _walk(file, ""):
-        address = h5py.h5o.get_info(node.id).addr
+        address = _address(node)
         if address in places:
             entries[path] = places[address]
         else:
@@ -62,6 +62,10 @@ def _walk(group: h5py.Group, path: str) -> Iterator[tuple[str, h5py.Group | h5py
             yield from _walk(group[name], below)
         else:
             yield below, group[name]
+
+
+def _address(node: h5py.Group | h5py.Dataset) -> int:
+    return int(h5py.h5o.get_info(node.id).addr)
 
 
 def _digest(node: h5py.Group | h5py.Dataset, names: tuple[str, ...]) -> str:
@@ -115,21 +119,9 @@ class Manifest:
         pieces = (each.rpartition("/") for each in self._entries if each)
         return [name for group, _, name in pieces if group == path]
 
-    def hold(self, path: str) -> None:
-        """Hold one group or dataset against its digest, without the values.
-
-        Raises
-        ------
-        ValueError
-            If it is missing or was changed.
-        """
-        node, entry = access.node(self._file, path), self._entries[path]
-        if isinstance(entry, str):
-            other = access.node(self._file, entry)
-            if h5py.h5o.get_info(node.id).addr != h5py.h5o.get_info(other.id).addr:
-                raise ValueError(f"{path} was replaced: it should be the same as {entry}")
-        elif _digest(node, entry[1]) != entry[0]:
-            raise ValueError(f"{path or 'an attribute of the root'} was changed")
+    def hold_root(self) -> None:
+        """Hold the attributes of the root against their digest; a ValueError if they were changed."""
+        self._hold("", self._file)
 
     def hold_all(self) -> None:
         """Hold all that was written against its digests, values included.
@@ -139,12 +131,27 @@ class Manifest:
         ValueError
             If anything is missing or was changed; more may have been added.
         """
+        nodes: dict[str, h5py.Group | h5py.Dataset] = {}
         for path, entry in self._entries.items():
-            self.hold(path)
-            node = access.node(self._file, path)
-            if isinstance(node, h5py.Dataset) and not isinstance(entry, str):
-                if digest_of_values(access.read(node)) != access.text(node, VALUES):
-                    raise ValueError(f"the values of {path} were changed")
+            folder, _, name = path.rpartition("/")
+            parent = nodes.get(folder, self._file) if path else self._file
+            if not isinstance(parent, h5py.Group):
+                raise ValueError(f"{folder} is not a group")
+            node = access.node(parent, name)
+            if isinstance(entry, str):
+                if entry not in nodes or _address(node) != _address(nodes[entry]):
+                    raise ValueError(f"{path} was replaced: it should be the same as {entry}")
+            else:
+                self._hold(path, node)
+                if isinstance(node, h5py.Dataset):
+                    if digest_of_values(access.read(node)) != access.text(node, VALUES):
+                        raise ValueError(f"the values of {path} were changed")
+            nodes[path] = node
+
+    def _hold(self, path: str, node: h5py.Group | h5py.Dataset) -> None:
+        entry = self._entries[path]
+        if isinstance(entry, str) or _digest(node, entry[1]) != entry[0]:
+            raise ValueError(f"{path or 'an attribute of the root'} was changed")
 
 
 class NoManifest:

@@ -118,7 +118,7 @@ def opened(path: StrPath, kind: Kind, *, whole: bool = True) -> Iterator[tuple[h
         # needs no file locks, which some network file systems lack.
         with h5py.File(stream, "r") as file:
             manifest = Manifest(file, found.content_digest)
-            manifest.hold("")
+            manifest.hold_root()
             if altered:
                 manifest.hold_all()
                 warnings.warn(

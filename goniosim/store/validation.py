@@ -3,6 +3,7 @@
 The types and ranges of single datasets stand in `goniosim.store.layout`; here is what ties them together.
 """
 
+import functools
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -151,6 +152,7 @@ RESULT = (
 )
 
 
+@functools.lru_cache(maxsize=8)
 def scene_of(config_yaml: str) -> Scene:
     """The scene in a file; a ValueError with its first mistake if there is none."""
     try:
