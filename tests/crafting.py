@@ -1,13 +1,11 @@
 """Files as a stranger might make them: edited at will, with digests that agree with what they hold."""
 
-import contextlib
 import hashlib
 import json
 
 import h5py
 
 from goniosim.store import access, manifest, seal
-from goniosim.store.encoding import write_text
 from goniosim.store.kinds import MODELS, RESULT
 
 
@@ -49,18 +47,15 @@ def reversioned(block, kind, version):
 
 
 def _manifest(file):
-    """As `goniosim.store.manifest.build`, of whatever can be described."""
+    """As `goniosim.store.manifest.build`; as the digest of the whole file is right, only the root is held against its own."""
     entries, todo = {}, [("", file)]
     while todo:
         path, node = todo.pop()
-        if isinstance(node, h5py.Dataset):
-            with contextlib.suppress(ValueError, TypeError):
-                write_text(node, manifest.VALUES, manifest.digest_of_values(access.read(node)))
-        names = [name for name in node.attrs if name not in manifest._BOOKKEEPING and access.is_plain(node, name)]
-        entries[path] = manifest._digest(node, names), names
-        if isinstance(node, h5py.Group) and path.count("/") < 8:
-            for name in node:
-                link = node.get(name, getlink=True)
-                if isinstance(link, h5py.HardLink) and f"{path}/{name}" != "/checksums":
-                    todo.append((f"{path}/{name}".lstrip("/"), node[name]))
+        is_group = isinstance(node, h5py.Group)
+        names = [name for name in node.attrs if access.is_plain(node, name)] if is_group else []
+        entries[path] = "" if path else manifest._digest(file, names), names
+        for name in node if is_group and path.count("/") < 8 else ():
+            link = node.get(name, getlink=True)
+            if isinstance(link, h5py.HardLink) and f"{path}/{name}" != "/checksums":
+                todo.append((f"{path}/{name}".lstrip("/"), node[name]))
     return json.dumps(entries).encode()
