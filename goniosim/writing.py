@@ -16,7 +16,7 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def printable(text: object, most: int = 0) -> str:
-    """Text as one line that a terminal shows and does not obey.
+    r"""Text as one line that a terminal shows and does not obey.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def printable(text: object, most: int = 0) -> str:
     Returns
     -------
     str
-        Characters that cannot be printed are written as in Python: ``\\x1b``.
+        Characters that cannot be printed are written as in Python: ``\x1b``.
     """
     shown = str(text)
     cut = f"{shown[:most]}..." if 0 < most < len(shown) else shown

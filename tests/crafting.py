@@ -47,7 +47,7 @@ def reversioned(block, kind, version):
 
 
 def _manifest(file):
-    """As `goniosim.store.manifest.build`; as the digest of the whole file is right, only the root is held against its own."""
+    """As `goniosim.store.manifest.build`; with the digest of the file right, only the root is held against its own."""
     entries, todo = {}, [("", file)]
     while todo:
         path, node = todo.pop()

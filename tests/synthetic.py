@@ -8,15 +8,18 @@ CONFIG = """\
 material:
   name: {name}
   layers:
-    - interface: {{type: dielectric, eta: 1.5, alpha: 0.2}}
-{below}\
+{layers}\
 incident: {{theta_deg: {theta_deg}}}
 slice: {{parametrization: {parametrization}, rows: {rows}, columns: {columns}}}
 simulation: {{rays: {rays}, seed: {seed}}}
 """
-BELOW = """\
+COATED = """\
+    - interface: {type: dielectric, eta: 1.5, alpha: 0.2}
     - medium: {tau: [0.05, 0.1, 0.8]}
     - interface: {type: lambert, rho: 0.5}
+"""
+BARE = """\
+    - interface: {type: conductor, eta: 1.5, kappa: 1.0, alpha: 0.2}
 """
 
 
@@ -66,7 +69,7 @@ def make_result(
     totals = {path: component.energy.sum(axis=(2, 3)) for path, component in made.items()}
     scene = CONFIG.format(
         name=name,
-        below=BELOW if "reflection/internal" in components else "",
+        layers=COATED if "reflection/internal" in components else BARE,
         theta_deg=[float(theta) for theta in theta_deg],
         parametrization=parametrization,
         rows=rows,

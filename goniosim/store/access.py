@@ -6,7 +6,6 @@ does not pay for, and HDF5 is not asked to decompress. Whatever is not as gonios
 
 import math
 import zlib
-from typing import Any
 
 import h5py
 import numpy as np
@@ -175,6 +174,7 @@ def _decoded(found: h5py.Dataset, skipped: int, raw: bytes, shape: tuple[int, ..
             raise ValueError(f"the values of {found.name} cannot be decompressed to {n_bytes} bytes")
     if len(raw) != n_bytes:
         raise ValueError(f"the values of {found.name} have {len(raw)} bytes in a chunk, not {n_bytes}")
-    if not skipped & 1 << _FILTERS.index(_SHUFFLE):
-        raw = np.ascontiguousarray(np.frombuffer(raw, np.uint8).reshape(size, -1).T)
-    return np.frombuffer(raw, found.dtype).reshape(shape)
+    if skipped & 1 << _FILTERS.index(_SHUFFLE):
+        return np.frombuffer(raw, found.dtype).reshape(shape)
+    ordered = np.ascontiguousarray(np.frombuffer(raw, np.uint8).reshape(size, -1).T)
+    return ordered.view(found.dtype).reshape(shape)

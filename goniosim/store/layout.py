@@ -140,8 +140,17 @@ DATASETS = (
     Dataset("incident/phi_deg", ("direction",), "float64", "degree", "azimuth of the incident light", AZIMUTH),
     Dataset("incident/rays", ("direction",), "int64", "1", "rays traced from the direction", NOT_NEGATIVE),
     Dataset("channels/name", ("channel",), "text", "1", "name of the colour channel"),
-    Dataset("cells/row_edges", ("row_edges",), "float64", "degree", "row coordinate at the edges of the rows", Range(0, 90)),
-    Dataset("cells/column_edges", ("column_edges",), "float64", "degree", "azimuth at the edges of the columns", Range(0, 360)),
+    Dataset(
+        "cells/row_edges", ("row_edges",), "float64", "degree", "row coordinate at the edges of the rows", Range(0, 90)
+    ),
+    Dataset(
+        "cells/column_edges",
+        ("column_edges",),
+        "float64",
+        "degree",
+        "azimuth at the edges of the columns",
+        Range(0, 360),
+    ),
     Dataset("cells/valid", _CELL, "bool", "1", "whether the cell lies wholly above the horizon", FLAG),
     Dataset("cells/solid_angle", _CELL, "float64", "sr", "solid angle of the part above the horizon", NOT_NEGATIVE),
     Dataset(
@@ -159,8 +168,12 @@ DATASETS = (
     Dataset("COMPONENT/hits", _CELL, "int64", "1", "paths that deposited energy in the cell", NOT_NEGATIVE),
     *(Dataset(f"audit/{entry}", _TOTAL, "float64", "1", meaning) for entry, meaning in AUDIT_ENTRIES.items()),
     Dataset("audit/ENTRY_stderr", _TOTAL, "float64", "1", "standard error of the audit entry", NOT_NEGATIVE),
-    Dataset("audit/direct_integrated", _TOTAL, "float64", "1", "direct reflection integrated over the cells", NOT_NEGATIVE),
-    Dataset("audit/direct_integrated_stderr", _TOTAL, "float64", "1", "standard error of direct_integrated", NOT_NEGATIVE),
+    Dataset(
+        "audit/direct_integrated", _TOTAL, "float64", "1", "direct reflection integrated over the cells", NOT_NEGATIVE
+    ),
+    Dataset(
+        "audit/direct_integrated_stderr", _TOTAL, "float64", "1", "standard error of direct_integrated", NOT_NEGATIVE
+    ),
     Dataset("cost/rays", ("rays",), "float64", "1", "rays per incident direction up to the checkpoint", NOT_NEGATIVE),
     Dataset("cost/seconds", ("rays",), "float64", "s", "elapsed time of tracing", NOT_NEGATIVE),
     Dataset("cost/cpu_seconds", ("rays",), "float64", "s", "processor time of tracing", NOT_NEGATIVE),

@@ -17,7 +17,9 @@ from goniosim.writing import StrPath
 SIZE = 512
 MARK = RESULT.mark
 _CHECKSUM_AT = SIZE - len("12345678\n")
-_FIELDS = re.compile(rb"schema 1\.\d+\n.*\nbytes: (\d{1,18})\nsha256: ([0-9a-f]{64})\nattributes-sha256: ([0-9a-f]{64})\n")
+_FIELDS = re.compile(
+    rb"schema 1\.\d+\n.*\nbytes: (\d{1,18})\nsha256: ([0-9a-f]{64})\nattributes-sha256: ([0-9a-f]{64})\n"
+)
 
 
 def read(stream: BinaryIO, path: StrPath) -> tuple[str, str]:

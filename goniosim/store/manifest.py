@@ -25,7 +25,7 @@ Entry = tuple[str, tuple[str, ...]] | str
 
 def digest_of_values(values: np.ndarray) -> str:
     """SHA-256 of the stored values of a dataset in C order, hexadecimal."""
-    return hashlib.sha256(np.ascontiguousarray(values).view(np.uint8)).hexdigest()
+    return hashlib.sha256(np.ascontiguousarray(values).view(np.uint8).data).hexdigest()
 
 
 def build(file: h5py.File) -> bytes:
@@ -143,9 +143,11 @@ class Manifest:
                     raise ValueError(f"{path} was replaced: it should be the same as {entry}")
             else:
                 self._hold(path, node)
-                if isinstance(node, h5py.Dataset):
-                    if digest_of_values(access.read(node)) != access.text(node, VALUES):
-                        raise ValueError(f"the values of {path} were changed")
+                changed = isinstance(node, h5py.Dataset) and (
+                    digest_of_values(access.read(node)) != access.text(node, VALUES)
+                )
+                if changed:
+                    raise ValueError(f"the values of {path} were changed")
             nodes[path] = node
 
     def _hold(self, path: str, node: h5py.Group | h5py.Dataset) -> None:

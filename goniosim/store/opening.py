@@ -122,7 +122,7 @@ def opened(path: StrPath, kind: Kind, *, whole: bool = True) -> Iterator[tuple[h
             if altered:
                 manifest.hold_all()
                 warnings.warn(
-                    f"{path}: annotated: something was added after it was written; all that goniosim wrote is unchanged",
+                    f"{path}: annotated: something was added after it was written; what goniosim wrote is unchanged",
                     AnnotatedFileWarning,
                     stacklevel=4,
                 )
@@ -213,7 +213,8 @@ def _refuse_newer(head: bytes, place: int, path: StrPath, kind: Kind) -> None:
 
 def _newer(version: str, path: StrPath, kind: Kind) -> NewerSchemaError:
     return NewerSchemaError(
-        f"{path}: {kind.what} of schema {version}, but this goniosim reads schema {kind.schema_version}; update goniosim"
+        f"{path}: is {kind.what} of schema {version}, "
+        f"but this goniosim reads schema {kind.schema_version}; update goniosim"
     )
 
 

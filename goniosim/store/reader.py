@@ -12,7 +12,6 @@ from goniosim.store.decoding import cells, shaped, values
 from goniosim.store.kinds import RESULT
 from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, describe
 from goniosim.store.manifest import Manifest, NoManifest
-
 from goniosim.store.opening import opened
 from goniosim.writing import StrPath
 

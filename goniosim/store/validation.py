@@ -120,8 +120,10 @@ RESULT = (
     Rule(
         "incident/rays",
         "be those in config_yaml, or fewer if status is partial",
-        lambda result, scene: (result.rays <= scene.simulation.rays).all()
-        and (result.status == "partial" or (result.rays == scene.simulation.rays).all()),
+        lambda result, scene: (
+            (result.rays <= scene.simulation.rays).all()
+            and (result.status == "partial" or (result.rays == scene.simulation.rays).all())
+        ),
     ),
     Rule(
         "reflection and transmission",

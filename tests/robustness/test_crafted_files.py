@@ -134,7 +134,10 @@ CASES = {
     "scene-angles": (scene("[0.0, 60.0]", "[0.0, 61.0]"), "theta_deg must be the angles in config_yaml"),
     "scene-more-angles": (scene("[0.0, 60.0]", "[0.0, 60.0, 70.0]"), "incident/theta_deg has shape"),
     "scene-slices": (scene("classic", "half"), "cells/parametrization must be that in config_yaml"),
-    "scene-transmits": (scene("{type: lambert, rho: 0.5}", "{type: dielectric, eta: 1.3, alpha: 0.1}"), "must be there"),
+    "scene-transmits": (
+        scene("{type: lambert, rho: 0.5}", "{type: dielectric, eta: 1.3, alpha: 0.1}"),
+        "must be there",
+    ),
     "parametrization": (text("cells", "parametrization", "banana"), "cells/parametrization must be that"),
     "theta-100": (values("incident/theta_deg", lambda v: v + 100), "incident/theta_deg must be from 0 to below 90"),
     "theta-90": (values("incident/theta_deg", lambda v: v + 30), "incident/theta_deg must be from 0 to below 90"),
@@ -185,11 +188,17 @@ CASES = {
     "bomb": (replaced(ENERGY, bomb), "cannot be decompressed to 64 bytes"),
     "unwritten": (dataset(ENERGY, shape=SLICE, dtype="f8", chunks=(1, 1, 2, 4)), "stored as goniosim stores"),
     "filter": (dataset(ENERGY, np.zeros(SLICE), compression="lzf"), "not stored as goniosim stores them"),
-    "external-link": (replaced(ENERGY, lambda g, n: g.__setitem__(n, h5py.ExternalLink("x.h5", "/a"))), "leads elsewhere"),
+    "external-link": (
+        replaced(ENERGY, lambda g, n: g.__setitem__(n, h5py.ExternalLink("x.h5", "/a"))),
+        "leads elsewhere",
+    ),
     "soft-loop": (replaced(ENERGY, lambda g, n: g.__setitem__(n, h5py.SoftLink(f"/{ENERGY}"))), "leads elsewhere"),
     "group-elsewhere": (replaced("cells", lambda g, n: g.__setitem__(n, h5py.ExternalLink("x.h5", "/"))), "elsewhere"),
     "virtual": (replaced(ENERGY, virtual), "not in the file itself"),
-    "external": (dataset(ENERGY, shape=SLICE, dtype="f8", external=[("/etc/passwd", 0, 384)]), "not in the file itself"),
+    "external": (
+        dataset(ENERGY, shape=SLICE, dtype="f8", external=[("/etc/passwd", 0, 384)]),
+        "not in the file itself",
+    ),
 }
 
 
@@ -212,7 +221,11 @@ def test_nothing_is_written(path, tmp_path, case):
 
     craft(path, CASES[case][0])
     before = {each: each.read_bytes() for each in tmp_path.rglob("*.h5")}
-    for arguments in (["info", "r.h5"], ["plot", "r.h5", "-o", "out"], ["compare", "r.h5", "-o", "out", "--figures", "none"]):
+    for arguments in (
+        ["info", "r.h5"],
+        ["plot", "r.h5", "-o", "out"],
+        ["compare", "r.h5", "-o", "out", "--figures", "none"],
+    ):
         outcome = CliRunner().invoke(main, arguments)
         assert (outcome.exit_code, outcome.stdout) == (6, ""), outcome.stderr
         assert outcome.stderr.startswith("goniosim: error: r.h5: ") and outcome.stderr.count("\n") == 1

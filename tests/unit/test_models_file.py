@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from goniosim.errors import ForeignFileError, OutputError, UnusableResultError
-from goniosim.store import ModelsWriter, access, is_models_file, may_be_models_file, open_models, open_result, write_result
+from goniosim.store import (
+    ModelsWriter,
+    access,
+    is_models_file,
+    may_be_models_file,
+    open_models,
+    open_result,
+    write_result,
+)
 from goniosim.store.models.layout import describe
 from synthetic import MODELS, make_result, write_models
 
@@ -94,7 +102,7 @@ def test_a_material_without_models_is_no_error(tmp_path):
 
 
 def test_schema_1_1_is_still_read(tmp_path):
-    """A file that goniosim 0.1 wrote; whatever else is in it, such files say only through HDF5 that they are damaged."""
+    """A file that goniosim 0.1 wrote; what a user adds to one is ignored without a word."""
     path = tmp_path / "models.h5"
     path.write_bytes(gzip.decompress((Path(__file__).parents[1] / "data" / "models-1.1.h5.gz").read_bytes()))
     with h5py.File(path, "r+") as file:

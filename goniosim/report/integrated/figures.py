@@ -69,10 +69,14 @@ def draw(models, folder, stem, *, suffix="png", theta_deg=None, materials=None, 
     make_folder(folder)
     for material in chosen:
         if labels:
-            yield from _alone(models, material, labels, folder / f"{stem}-{file_name(material.name)}", suffix, theta_deg)
+            yield from _alone(
+                models, material, labels, folder / f"{stem}-{file_name(material.name)}", suffix, theta_deg
+            )
         else:
             wanted = theta_deg or materials or len(chosen) <= FEW
-            yield from _together(models, material, folder / f"{stem}-{file_name(material.name)}", suffix, theta_deg, wanted)
+            yield from _together(
+                models, material, folder / f"{stem}-{file_name(material.name)}", suffix, theta_deg, wanted
+            )
 
 
 def _together(models, material, stem, suffix, theta_deg, with_directions):
@@ -101,7 +105,9 @@ def _alone(models, material, labels, stem, suffix, theta_deg):
             )
             # Brackets mean something to a shell.
             label = entry.label.rstrip("]").replace("[", "-")
-            yield from draw_result(one, stem.parent, f"{stem.name}-{file_name(label)}", suffix=suffix, theta_deg=theta_deg)
+            yield from draw_result(
+                one, stem.parent, f"{stem.name}-{file_name(label)}", suffix=suffix, theta_deg=theta_deg
+            )
 
 
 def _names(materials):

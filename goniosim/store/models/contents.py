@@ -79,9 +79,7 @@ ENTRY = (
     validation.Rule(
         "the name of a material", "be usable as a file name", lambda entry: validation.is_file_name(entry.name)
     ),
-    validation.Rule(
-        "config_hash", "be 64 hexadecimal digits", lambda entry: validation.is_hash(entry.config_hash)
-    ),
+    validation.Rule("config_hash", "be 64 hexadecimal digits", lambda entry: validation.is_hash(entry.config_hash)),
     validation.Rule(
         "a model",
         "be called NAME or NAME[OPTIONS], in plain letters",
@@ -144,7 +142,7 @@ def read_slices(source: Source, material: MaterialEntry, model: ModelEntry, comp
         return values(shaped(group, path, entry, sizes), entry)
 
     return {
-        name: Component(**{each: read(f"{name}/{each}") for each in VALUES}, contains_delta=contains_delta)
+        name: Component(*(read(f"{name}/{each}") for each in VALUES), contains_delta=contains_delta)
         for name, contains_delta in model.components.items()
         if name.startswith(component)
     }
