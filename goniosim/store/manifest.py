@@ -84,6 +84,10 @@ class Manifest:
     digest : str
         Of the manifest itself, from the seal.
 
+    Attributes
+    ----------
+    file : h5py.File
+
     Raises
     ------
     ValueError
@@ -97,7 +101,7 @@ class Manifest:
         raw = bytes(access.read(found)[()])
         if hashlib.sha256(raw).hexdigest() != digest:
             raise ValueError(f"{PATH} was changed")
-        self._file = file
+        self.file = file
         self._entries: dict[str, Entry] = {}
         entries = json.loads(raw)
         if not isinstance(entries, dict):
@@ -121,7 +125,7 @@ class Manifest:
 
     def hold_root(self) -> None:
         """Hold the attributes of the root against their digest; a ValueError if they were changed."""
-        self._hold("", self._file)
+        self._hold("", self.file)
 
     def hold_all(self) -> None:
         """Hold all that was written against its digests, values included.
@@ -134,7 +138,7 @@ class Manifest:
         nodes: dict[str, h5py.Group | h5py.Dataset] = {}
         for path, entry in self._entries.items():
             folder, _, name = path.rpartition("/")
-            parent = nodes.get(folder, self._file) if path else self._file
+            parent = nodes.get(folder, self.file) if path else self.file
             if not isinstance(parent, h5py.Group):
                 raise ValueError(f"{folder} is not a group")
             node = access.node(parent, name)
@@ -165,18 +169,18 @@ class NoManifest:
     """
 
     def __init__(self, file: h5py.File) -> None:
-        self._file = file
+        self.file = file
 
     def has(self, path: str) -> bool:
         """Whether there is a group or dataset."""
         folder, _, name = path.rpartition("/")
-        return (not folder or self.has(folder)) and access.has(access.group(self._file, folder), name)
+        return (not folder or self.has(folder)) and access.has(access.group(self.file, folder), name)
 
     def attributes(self, path: str) -> tuple[str, ...]:
         """Names of those attributes of a group that are of a kind that goniosim writes."""
-        group = access.group(self._file, path)
+        group = access.group(self.file, path)
         return tuple(name for name in group.attrs if access.is_plain(group, name))
 
     def members(self, path: str) -> list[str]:
         """Names of what is in a group."""
-        return list(access.group(self._file, path))
+        return list(access.group(self.file, path))

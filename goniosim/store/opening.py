@@ -105,40 +105,47 @@ def opened(path: StrPath, kind: Kind, *, whole: bool = True) -> Iterator[tuple[h
     ------
     ForeignFileError, DamagedFileError, NewerSchemaError, UnusableResultError
     """
-    with open_regular(path) as stream, decoding(path, kind.remedy):
-        head = stream.read(seal.WINDOW)
-        place = _found_seal(stream, head, path, kind)
-        if place is None:
-            with _earlier(stream, path, kind, whole) as file:
-                yield file, NoManifest(file)
-            return
-        found = _sealed(stream, head, place, path, kind)
-        altered = whole and seal.digest(stream, place) != found.digest
-        # Reading through this very stream leaves no moment in which another file could take its place, and
-        # needs no file locks, which some network file systems lack.
-        with h5py.File(stream, "r") as file:
-            manifest = Manifest(file, found.content_digest)
-            manifest.hold_root()
-            if altered:
-                manifest.hold_all()
-                warnings.warn(
-                    f"{path}: annotated: something was added after it was written; what goniosim wrote is unchanged",
-                    AnnotatedFileWarning,
-                    stacklevel=4,
-                )
-            yield file, manifest
+    with open_regular(path) as stream, contextlib.ExitStack() as stack:
+        # What goes wrong in the body of the ``with`` statement is no damage of the file.
+        with decoding(path, kind.remedy):
+            # Reading through this very stream leaves no moment in which another file could take its place, and
+            # needs no file locks, which some network file systems lack.
+            ours = _verified(stream, path, kind, whole, stack)
+        yield ours.file, ours
 
 
-@contextlib.contextmanager
-def _earlier(stream: BinaryIO, path: StrPath, kind: Kind, whole: bool) -> Iterator[h5py.File]:
+def _verified(
+    stream: io.BufferedReader, path: StrPath, kind: Kind, whole: bool, stack: contextlib.ExitStack
+) -> Manifest | NoManifest:
+    head = stream.read(seal.WINDOW)
+    place = _found_seal(stream, head, path, kind)
+    if place is None:
+        return _earlier(stream, path, kind, whole, stack)
+    found = _sealed(stream, head, place, path, kind)
+    altered = whole and seal.digest(stream, place) != found.digest
+    manifest = Manifest(stack.enter_context(h5py.File(stream, "r")), found.content_digest)
+    manifest.hold_root()
+    if altered:
+        manifest.hold_all()
+        warnings.warn(
+            f"{path}: annotated: something was added after it was written; what goniosim wrote is unchanged",
+            AnnotatedFileWarning,
+            stacklevel=6,
+        )
+    return manifest
+
+
+def _earlier(
+    stream: io.BufferedReader, path: StrPath, kind: Kind, whole: bool, stack: contextlib.ExitStack
+) -> NoManifest:
     """Open a file of an earlier schema. Models had no digest, and only the checksums of HDF5."""
     digest, of_attributes = legacy.read(stream, path) if kind is RESULT else ("", "")
     if digest and whole:
         legacy.verify(stream, digest, path)
-    with h5py.File(stream, "r") as file:
-        if digest and not whole:
-            legacy.verify_attributes({name: access.attribute(file, name) for name in file.attrs}, of_attributes, path)
-        yield file
+    file = stack.enter_context(h5py.File(stream, "r"))
+    if digest and not whole:
+        legacy.verify_attributes({name: access.attribute(file, name) for name in file.attrs}, of_attributes, path)
+    return NoManifest(file)
 
 
 def kind_of(path: StrPath) -> tuple[Kind | None, bool]:
@@ -177,7 +184,7 @@ def _kind(stream: BinaryIO, head: bytes) -> tuple[Kind | None, bool]:
         named = (kind for kind in KINDS if kind.mark in head or kind.filetype.encode() in head)
     else:
         # Other files may well speak of ours; a whole seal is in none of them by accident.
-        named = (kind for kind in KINDS if kind.mark in head and seal.parse(head, head.find(kind.mark)))
+        named = (kind for kind in KINDS if kind.mark in head and seal.parse(head, seal.find(head, kind.mark)))
     return next(named, None), False
 
 
@@ -186,7 +193,7 @@ def _found_seal(stream: BinaryIO, head: bytes, path: StrPath, kind: Kind) -> int
     if kind is RESULT and head.startswith(legacy.MARK):
         _refuse_newer(head, 0, path, kind)
         return None
-    place = head.find(kind.mark)
+    place = seal.find(head, kind.mark)
     if place >= 0 and head.startswith(SIGNATURE):
         _refuse_newer(head, place, path, kind)
     found, readable = _kind(stream, head)

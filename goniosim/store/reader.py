@@ -12,7 +12,7 @@ from goniosim.store.decoding import cells, shaped, values
 from goniosim.store.kinds import RESULT
 from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, describe
 from goniosim.store.manifest import Manifest, NoManifest
-from goniosim.store.opening import opened
+from goniosim.store.opening import decoding, opened
 from goniosim.writing import StrPath
 
 Ours = Manifest | NoManifest
@@ -44,7 +44,7 @@ def open_result(path: StrPath) -> Result:
     UnusableResultError
         If it is a file of integrated models: `goniosim.store.open_models` reads those.
     """
-    with opened(path, RESULT) as (file, ours):
+    with opened(path, RESULT) as (file, ours), decoding(path, RESULT.remedy):
         return _result(file, ours)
 
 
@@ -68,7 +68,7 @@ def read_header(path: StrPath) -> dict[str, str | int]:
     ForeignFileError, DamagedFileError, NewerSchemaError, UnusableResultError
         As `open_result`.
     """
-    with opened(path, RESULT, whole=False) as (file, ours):
+    with opened(path, RESULT, whole=False) as (file, ours), decoding(path, RESULT.remedy):
         return _header(file, ours)
 
 

@@ -63,12 +63,18 @@ def version(head: bytes, place: int) -> tuple[int, int] | None:
     return (int(match[1]), int(match[2])) if match else None
 
 
+def find(head: bytes, mark: bytes) -> int:
+    """Place of the seal that begins with ``mark``, or of what may be left of it; -1 if there is none."""
+    places = [match.start() for match in re.finditer(re.escape(mark), head)]
+    # A note may use the same words.
+    return next((place for place in places if _is_whole(head[place : place + SIZE])), places[0] if places else -1)
+
+
 def parse(head: bytes, place: int) -> Seal | None:
     """Read the seal at a place; None if it is cut off or was altered."""
     block = head[place : place + SIZE]
-    body, checksum = block[:_CHECKSUM_AT], block[_CHECKSUM_AT:]
-    fields = _FIELDS.search(body)
-    if len(block) < SIZE or checksum != _checksum(body) or fields is None:
+    fields = _FIELDS.search(block)
+    if not _is_whole(block) or fields is None:
         return None
     return Seal(place, int(fields[1]), fields[2].decode(), fields[3].decode())
 
@@ -81,6 +87,11 @@ def digest(stream: BinaryIO, place: int) -> str:
     while piece := stream.read(_PIECE):
         found.update(piece)
     return found.hexdigest()
+
+
+def _is_whole(block: bytes) -> bool:
+    body, checksum = block[:_CHECKSUM_AT], block[_CHECKSUM_AT:]
+    return len(block) == SIZE and checksum == _checksum(body)
 
 
 def _checksum(body: bytes) -> bytes:

@@ -153,7 +153,7 @@ def test_a_hole_of_zeros(tmp_path, sound):
 
 
 def annotate(file):
-    file.attrs["note"] = "mine"
+    file.attrs["note"] = "goniosim result, schema 9.0\n is not yet out"
     file["reflection"].attrs["note"] = ["of", "several", "words"]
     file["effects"].attrs["weather"] = 3
     file["reflection/internal/energy"].attrs["note"] = 1.5

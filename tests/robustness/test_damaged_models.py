@@ -124,6 +124,13 @@ def test_what_a_user_changes_is_damage(path, edit, what):
     assert what in refused(path, path.read_bytes(), DamagedFileError)
 
 
+@pytest.mark.parametrize("error", [ValueError("mine"), OSError(28, "No space left"), RuntimeError("mine")])
+def test_what_goes_wrong_while_a_file_is_open_is_no_damage(path, error):
+    with pytest.raises(type(error)) as caught, open_models(path):
+        raise error
+    assert caught.value is error
+
+
 @pytest.mark.parametrize("version", ["2.0", "17.3"])
 def test_newer_major_version(path, version):
     craft(path, version=version)

@@ -5,6 +5,7 @@ Whatever is not as described raises a ValueError.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import h5py
 import numpy as np
@@ -137,12 +138,12 @@ def read_slices(source: Source, material: MaterialEntry, model: ModelEntry, comp
     directions, rows, columns = material.cells.valid.shape
     sizes = {"direction": directions, "channel": len(material.channels), "row": rows, "column": columns}
 
-    def read(path: str) -> np.ndarray:
+    def read(path: str) -> Any:
         entry = describe(path)
         return values(shaped(group, path, entry, sizes), entry)
 
     return {
-        name: Component(*(read(f"{name}/{each}") for each in VALUES), contains_delta=contains_delta)
+        name: Component(**{each: read(f"{name}/{each}") for each in VALUES} | {"contains_delta": contains_delta})
         for name, contains_delta in model.components.items()
         if name.startswith(component)
     }

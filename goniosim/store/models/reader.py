@@ -102,8 +102,7 @@ def open_models(path: StrPath) -> Iterator[ModelsFile]:
     NewerSchemaError
         If its major schema version is newer than this goniosim reads.
     """
-    with contextlib.ExitStack() as stack:
-        file, ours = stack.enter_context(opened(path, MODELS))
+    with opened(path, MODELS) as (file, ours):
         with decoding(path, MODELS.remedy):
             models = ModelsFile(path, file, ours)
         yield models
