@@ -18,7 +18,7 @@ from goniosim.errors import (
     NewerSchemaError,
     UnusableResultError,
 )
-from goniosim.store import access, legacy, seal
+from goniosim.store import access, checksums, legacy, seal
 from goniosim.store.kinds import KINDS, MODELS, RESULT, Kind
 from goniosim.store.manifest import Manifest, NoManifest
 from goniosim.writing import StrPath
@@ -118,14 +118,23 @@ def _verified(
     stream: io.BufferedReader, path: StrPath, kind: Kind, whole: bool, stack: contextlib.ExitStack
 ) -> Manifest | NoManifest:
     head = stream.read(seal.WINDOW)
-    place = _found_seal(stream, head, path, kind)
-    if place is None:
+    if kind is RESULT and head.startswith(legacy.MARK):
+        _refuse_newer(head, 0, path, kind)
         return _earlier(stream, path, kind, whole, stack)
-    found = _sealed(stream, head, place, path, kind)
-    altered = whole and seal.digest(stream, place) != found.digest
-    manifest = Manifest(stack.enter_context(h5py.File(stream, "r")), found.content_digest)
+    place = seal.find(head, kind.mark)
+    if place >= 0 and head.startswith(SIGNATURE):
+        _refuse_newer(head, place, path, kind)
+    intact = whole and _is_intact(stream, head, place)
+    if not intact:
+        found, readable = _kind(stream, head)
+        if found is not kind:
+            raise _another(found, head, path, kind)
+        if place < 0 and kind is MODELS and readable and _is_earlier(stream, path):
+            return _earlier(stream, path, kind, whole, stack)
+    sealed = _sealed(stream, head, place, path, kind)
+    manifest = Manifest(stack.enter_context(h5py.File(stream, "r")), sealed.content_digest)
     manifest.hold_root()
-    if altered:
+    if whole and not intact:
         manifest.hold_all()
         warnings.warn(
             f"{path}: annotated: something was added after it was written; what goniosim wrote is unchanged",
@@ -133,6 +142,21 @@ def _verified(
             stacklevel=6,
         )
     return manifest
+
+
+def _is_intact(stream: BinaryIO, head: bytes, place: int) -> bool:
+    """Whether a file is exactly what was written: found out before HDF5 sees any of it."""
+    found = seal.parse(head, place) if place >= 0 and head.startswith(SIGNATURE) else None
+    return found is not None and seal.digest(stream, place) == found.digest
+
+
+def _is_earlier(stream: BinaryIO, path: StrPath) -> bool:
+    """Whether a file of models without a seal is of a schema that had none."""
+    with h5py.File(stream, "r") as file:
+        version = access.text(file, "schema_version")
+    if int(version.split(".")[0]) > int(MODELS.schema_version.split(".")[0]):
+        raise _newer(version, path, MODELS)
+    return version in ("1.0", "1.1")
 
 
 def _earlier(
@@ -143,6 +167,8 @@ def _earlier(
     if digest and whole:
         legacy.verify(stream, digest, path)
     file = stack.enter_context(h5py.File(stream, "r"))
+    if kind is MODELS:
+        checksums.verify_all(file)
     if digest and not whole:
         legacy.verify_attributes({name: access.attribute(file, name) for name in file.attrs}, of_attributes, path)
     return NoManifest(file)
@@ -188,29 +214,6 @@ def _kind(stream: BinaryIO, head: bytes) -> tuple[Kind | None, bool]:
     return next(named, None), False
 
 
-def _found_seal(stream: BinaryIO, head: bytes, path: StrPath, kind: Kind) -> int | None:
-    """Place of the seal; None for a sound kind of file that has none, being of an earlier schema."""
-    if kind is RESULT and head.startswith(legacy.MARK):
-        _refuse_newer(head, 0, path, kind)
-        return None
-    place = seal.find(head, kind.mark)
-    if place >= 0 and head.startswith(SIGNATURE):
-        _refuse_newer(head, place, path, kind)
-    found, readable = _kind(stream, head)
-    if found is not kind:
-        raise _another(found, head, path, kind)
-    if place >= 0:
-        return place
-    if kind is MODELS and readable:
-        with h5py.File(stream, "r") as file:
-            version = access.text(file, "schema_version")
-        if int(version.split(".")[0]) > int(kind.schema_version.split(".")[0]):
-            raise _newer(version, path, kind)
-        if version in ("1.0", "1.1"):
-            return None
-    raise DamagedFileError(f"{path}: its seal (the dataset checksums/file) is missing; {kind.remedy}")
-
-
 def _refuse_newer(head: bytes, place: int, path: StrPath, kind: Kind) -> None:
     """The version comes before anything else: a newer file may differ in all the rest."""
     version = seal.version(head, place)
@@ -241,6 +244,8 @@ def _another(found: Kind | None, head: bytes, path: StrPath, kind: Kind) -> Goni
 
 def _sealed(stream: BinaryIO, head: bytes, place: int, path: StrPath, kind: Kind) -> seal.Seal:
     """The seal at a place, if it is sound and the file not cut off."""
+    if place < 0:
+        raise DamagedFileError(f"{path}: its seal (the dataset checksums/file) is missing; {kind.remedy}")
     size = stream.seek(0, 2)
     found = seal.parse(head, place)
     if found is None:

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 
-from goniosim.errors import ForeignFileError, OutputError, UnusableResultError
+from goniosim.errors import DamagedFileError, ForeignFileError, OutputError, UnusableResultError
 from goniosim.store import (
     ModelsWriter,
     access,
@@ -17,6 +17,7 @@ from goniosim.store import (
     open_result,
     write_result,
 )
+from goniosim.store.checksums import fletcher32
 from goniosim.store.models.layout import describe
 from synthetic import MODELS, make_result, write_models
 
@@ -118,6 +119,23 @@ def test_schema_1_1_is_still_read(tmp_path):
     assert slices["reflection/internal"].energy.sum(axis=(2, 3))[0] == pytest.approx(OLD_ALBEDO, rel=1e-6)
 
 
+def test_a_flipped_bit_in_schema_1_1_is_an_error(tmp_path):
+    """Forty places in the chunks of slices, where HDF5 has a checksum, and one in the scene, where it has none."""
+    path = tmp_path / "models.h5"
+    sound = gzip.decompress((Path(__file__).parents[1] / "data" / "models-1.1.h5.gz").read_bytes())
+    path.write_bytes(sound)
+    with h5py.File(path) as file:
+        dataset = file["patina/ww09/reflection/internal/energy"].id
+        chunks = [dataset.get_chunk_info(number) for number in range(dataset.get_num_chunks())]
+    places = [chunk.byte_offset + chunk.size * part // 7 for chunk in chunks for part in range(7)]
+    for number, place in enumerate([*places, sound.index(b"material:") + 40]):
+        copy = bytearray(sound)
+        copy[place] ^= 1 << number % 8
+        path.write_bytes(copy)
+        with pytest.raises(DamagedFileError), open_models(path) as models:
+            models.material("patina")
+
+
 def test_schema_1_0_is_still_read(tmp_path):
     """It had no lists, no digest of the scene and no main component."""
     path = tmp_path / "models.h5"
@@ -173,6 +191,20 @@ def test_nothing_is_left_of_a_file_that_was_not_committed(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["models.h5"]
     with pytest.raises(OutputError, match="cannot be written"):
         ModelsWriter(tmp_path / "missing" / "models.h5", PROVENANCE)
+
+
+@pytest.mark.parametrize("length", [0, 1, 2, 7, 4096, 300_001])
+def test_the_checksum_is_that_of_hdf5(tmp_path, length):
+    """HDF5 appends it to each chunk; two ways in which HDF5 may write 0 are one to us."""
+    values = np.random.default_rng(length).integers(0, 256, max(length, 1), dtype=np.uint8)
+    if length == 0:
+        values[:] = 0
+    with h5py.File(tmp_path / "file.h5", "w") as file:
+        dataset = file.create_dataset("values", data=values, chunks=values.shape, fletcher32=True)
+        _, raw = dataset.id.read_direct_chunk((0,))
+    stored = int.from_bytes(raw[-4:], "little")
+    assert bytes(values) == raw[:-4]
+    assert fletcher32(raw[:-4]) == ((stored & 0xFFFF) % 65535, (stored >> 16) % 65535)
 
 
 def test_only_the_components_of_the_schema_are_described():

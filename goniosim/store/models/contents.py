@@ -3,6 +3,7 @@
 Whatever is not as described raises a ValueError.
 """
 
+import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -111,6 +112,10 @@ def read_material(source: Source, name: str) -> MaterialEntry:
     config_yaml = access.text(group, "config_yaml")
     if access.text(group, "name") != name:
         raise ValueError(f"the material {name} calls itself {access.text(group, 'name')!r}")
+    if source.version == "1.1" and hashlib.sha256(config_yaml.encode()).hexdigest() != access.text(
+        group, "config_yaml_sha256"
+    ):
+        raise ValueError(f"the scene of {name} does not match its digest")
     scene = validation.scene_of(config_yaml)
     sizes = validation.sizes_of(scene)
     shared = {entry.path: values(shaped(group, entry.path, entry, sizes), entry) for entry in SHARED}
