@@ -132,7 +132,7 @@ def _verified(
         if place < 0 and kind is MODELS and readable and _is_earlier(stream, path):
             return _earlier(stream, path, kind, whole, stack)
     sealed = _sealed(stream, head, place, path, kind)
-    manifest = Manifest(stack.enter_context(h5py.File(stream, "r")), sealed.content_digest)
+    manifest = Manifest(_hdf5(stream, stack), sealed.content_digest)
     manifest.hold_root()
     if whole and not intact:
         manifest.hold_all()
@@ -142,6 +142,18 @@ def _verified(
             stacklevel=6,
         )
     return manifest
+
+
+def _hdf5(stream: io.BufferedReader, stack: contextlib.ExitStack) -> h5py.File:
+    file = h5py.File(stream, "r")
+
+    def close() -> None:
+        # HDF5 may stumble over damage once more; by now all that was wanted is read.
+        with contextlib.suppress(OSError, RuntimeError):
+            file.close()
+
+    stack.callback(close)
+    return file
 
 
 def _is_intact(stream: BinaryIO, head: bytes, place: int) -> bool:
@@ -166,7 +178,7 @@ def _earlier(
     digest, of_attributes = legacy.read(stream, path) if kind is RESULT else ("", "")
     if digest and whole:
         legacy.verify(stream, digest, path)
-    file = stack.enter_context(h5py.File(stream, "r"))
+    file = _hdf5(stream, stack)
     if kind is MODELS:
         checksums.verify_all(file)
     if digest and not whole:
