@@ -132,7 +132,8 @@ def read(found: h5py.Dataset) -> np.ndarray:
     if found.dtype.hasobject:
         raise ValueError(f"the values of {found.name} are not of fixed size")
     n_bytes = math.prod(found.shape) * found.dtype.itemsize
-    if n_bytes > _MOST_COMPRESSED * stored + _NO_STORAGE or stored > found.file.id.get_filesize():
+    most = _MOST_COMPRESSED * stored if plan.get_layout() == h5py.h5d.CHUNKED else stored
+    if n_bytes > most + _NO_STORAGE or stored > found.file.id.get_filesize():
         raise ValueError(f"{found.name} claims {n_bytes} bytes and has {stored}")
     if plan.get_layout() == h5py.h5d.CHUNKED:
         return _read_chunks(found, plan)

@@ -11,8 +11,15 @@ import numpy as np
 import pytest
 
 from crafting import craft
-from goniosim.errors import AnnotatedFileWarning, DamagedFileError, ForeignFileError, GoniosimError, NewerSchemaError
-from goniosim.store import legacy, open_result, read_header, seal, write_result
+from goniosim.errors import (
+    AnnotatedFileWarning,
+    DamagedFileError,
+    ForeignFileError,
+    GoniosimError,
+    NewerSchemaError,
+    OutputError,
+)
+from goniosim.store import legacy, open_result, read_header, reserve_output, seal, write_result
 from goniosim.store.kinds import RESULT
 from synthetic import make_result
 
@@ -232,6 +239,23 @@ def test_foreign_hdf5(tmp_path, path):
     with h5py.File(other, "w") as file, h5py.File(path) as result:
         result.copy("/", file, "gold")
     refused(other, other.read_bytes(), ForeignFileError)
+
+
+def test_what_is_overwritten_is_a_result_sound_or_not(tmp_path, sound):
+    """A collection into which results were copied, or a text about them, is none."""
+    path, result = tmp_path / "r.h5", make_result((20.0,), rows=2, columns=4)
+    for position in (40, 2100, len(sound) // 2):
+        path.write_bytes(flipped(sound, position, 3))
+        write_result(result, path)
+        assert path.read_bytes() == sound
+    with h5py.File(tmp_path / "all.h5", "w") as file, h5py.File(path) as one:
+        one.copy("/", file, "gold")
+    collection = (tmp_path / "all.h5").read_bytes()
+    for content in (collection, b"text", (Path(__file__).parents[2] / "data_schema.md").read_bytes(), bytes(9000)):
+        path.write_bytes(content)
+        with pytest.raises(OutputError, match="is not overwritten"):
+            reserve_output(path, 0)
+        assert path.read_bytes() == content
 
 
 def test_not_a_file(tmp_path):
