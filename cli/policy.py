@@ -49,7 +49,7 @@ class PolicyGroup(click.Group):
             ctx.exit(130)
         except Exception as error:
             if ctx.meta.get(_DEBUG):
-                traceback.print_exception(error)
+                say("".join(traceback.format_exception(error)).rstrip("\n"), err=True)
             for line in _lines(error):
                 click.echo(printable(line), err=True)
             ctx.exit(getattr(error, "exit_code", 1))

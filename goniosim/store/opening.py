@@ -21,7 +21,7 @@ from goniosim.errors import (
 from goniosim.store import access, checksums, legacy, seal
 from goniosim.store.kinds import KINDS, MODELS, RESULT, Kind
 from goniosim.store.manifest import Manifest, NoManifest
-from goniosim.writing import StrPath
+from goniosim.writing import StrPath, printable
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # Where the superblock of HDF5 (version 2 and 3) says how long the file is.
@@ -76,7 +76,7 @@ def decoding(path: StrPath, remedy: str) -> Iterator[None]:
     try:
         yield
     except (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError, MemoryError) as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
+        reason = printable(" ".join(str(error).split()) or type(error).__name__)
         raise DamagedFileError(f"{path}: is damaged, or goniosim did not write it so: {reason}; {remedy}") from error
 
 

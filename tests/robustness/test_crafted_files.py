@@ -169,6 +169,7 @@ CASES = {
     "cost-endless": (dataset("cost/rays", shape=(1 << 40,), dtype="f8", chunks=(1 << 20,)), "cost/rays has shape"),
     "cost-error-missing": (removed("cost/error_reflection_internal"), "cost/error_SAMPLED must be there"),
     "effects-name": (number("effects", "\x1b]0;evil", np.int8(1)), "effects must have plain names"),
+    "effects-escape": (number("effects", "\x1b]0;evil", np.int8(3)), r"the attribute \\x1b\]0;evil of /effects is 3"),
     "effects-number": (number("effects", "absorption", np.int8(7)), "absorption of /effects is 7"),
     "effects-missing": (removed("effects"), "effects is missing"),
     "delta": (number("reflection/direct", "contains_delta", np.int8(3)), "contains_delta of /reflection/direct is 3"),
@@ -239,6 +240,18 @@ def test_nothing_is_written(path, tmp_path, case):
         assert outcome.stderr.startswith("goniosim: error: r.h5: ") and outcome.stderr.count("\n") == 1
         assert outcome.stderr[:-1].isprintable()
     assert {each: each.read_bytes() for each in tmp_path.rglob("*") if each.is_file()} == before
+
+
+def test_a_traceback_is_shown_harmless_too(path):
+    from goniosim_cli.main import main
+
+    craft(path, CASES["effects-escape"][0])
+    with pytest.raises(DamagedFileError) as caught:
+        open_result(path)
+    assert str(caught.value).isprintable()
+    outcome = CliRunner().invoke(main, ["info", "r.h5", "--debug"])
+    assert outcome.exit_code == 6 and outcome.stderr.startswith("Traceback")
+    assert "\\x1b]0;evil" in outcome.stderr and outcome.stderr.replace("\n", "").isprintable()
 
 
 def test_texts_that_are_free_are_shown_harmless_and_short(path):
