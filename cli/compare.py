@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from .options import PATH
-from .policy import debug_option
+from .policy import debug_option, say
 from .signals import tidied_up, undisturbed
 
 
@@ -76,22 +76,22 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
     materials = compare_report.check_headers(paths, allow_partial)
     folder = Path(output or f"{Path(results).resolve().stem}-comparison")
 
-    def say(message):
+    def report_on(message):
         if not quiet:
-            click.echo(message, err=True)
+            say(message, err=True)
 
     for path in passed_over:
-        say(f"{path}: holds integrated models, not a result; stepped over")
+        report_on(f"{path}: holds integrated models, not a result; stepped over")
     options = materials, request, subcells, figures
     with tidied_up(), contextlib.closing(compare_report.Report(folder, *options)) as report:
         for number, path in enumerate(paths, 1):
-            report.add(path, lambda message, n=number: say(f"{n}/{len(paths)} {message}"))
+            report.add(path, lambda message, n=number: report_on(f"{n}/{len(paths)} {message}"))
         text = report.finish()
         with undisturbed():
             report.commit()
     if not quiet:
-        click.echo(text)
-        click.echo(f"\n{folder}")
+        say(text)
+        say(f"\n{folder}")
 
 
 def _names(models):

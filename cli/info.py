@@ -3,7 +3,7 @@
 import click
 
 from .options import PATH
-from .policy import debug_option, say_error
+from .policy import debug_option, say, say_error
 
 
 @click.command()
@@ -30,6 +30,7 @@ def info(ctx, paths, as_json):
 
     from goniosim.report import text
     from goniosim.store import may_be_models_file
+    from goniosim.writing import printable
 
     if len(paths) > 1 or os.path.isdir(paths[0]):
         _table(ctx, paths, as_json)
@@ -40,8 +41,8 @@ def info(ctx, paths, as_json):
         click.echo(json.dumps(show(file, as_json), indent=1, allow_nan=False))
     else:
         description = show(file, as_json)
-        click.echo(f"{file}  ({text.size(os.path.getsize(file))})")
-        click.echo(description)
+        say(f"{printable(file)}  ({text.size(os.path.getsize(file))})")
+        say(description)
 
 
 def _table(ctx, paths, as_json):
@@ -50,7 +51,10 @@ def _table(ctx, paths, as_json):
     from goniosim.report import listing
 
     entries, errors = listing.listing(paths)
-    click.echo(json.dumps(entries, indent=1) if as_json else listing.description(entries))
+    if as_json:
+        click.echo(json.dumps(entries, indent=1))
+    else:
+        say(listing.description(entries))
     for error in errors:
         say_error(f"error: {error}")
     if errors:
@@ -70,5 +74,4 @@ def _models(file, as_json):
     from goniosim.store import open_models
 
     with open_models(file) as models:
-        models.verify()
         return summary.as_data(models) if as_json else summary.description(models)

@@ -48,6 +48,7 @@ def plot(file, output, suffix, theta, materials, models):
     from pathlib import Path
 
     from goniosim.store import may_be_models_file
+    from goniosim.writing import printable
 
     options = {"suffix": suffix, "theta_deg": theta or None}
     if may_be_models_file(file):
@@ -58,7 +59,7 @@ def plot(file, output, suffix, theta, materials, models):
     else:
         draw = _draw_result
     for path in draw(file, Path(output), Path(file).stem, options):
-        click.echo(path)
+        click.echo(printable(path))
 
 
 def _draw_result(file, folder, stem, options):

@@ -2,11 +2,13 @@
 
 import sys
 import traceback
+import warnings
 
 import click
 
-from goniosim.errors import ConfigError, GoniosimError, RefusalError, ResourceError
+from goniosim.errors import AnnotatedFileWarning, ConfigError, GoniosimError, RefusalError, ResourceError
 from goniosim.provenance import commanded
+from goniosim.writing import printable
 
 from . import streams
 from .hints import HintingGroup
@@ -42,7 +44,9 @@ class PolicyGroup(HintingGroup):
     def invoke(self, ctx):
         """Run a command and leave with the exit code of whatever goes wrong."""
         try:
-            return super().invoke(ctx)
+            with warnings.catch_warnings():
+                _say_what_was_annotated()
+                return super().invoke(ctx)
         except (click.exceptions.Exit, click.ClickException, click.Abort):
             raise
         except KeyboardInterrupt:
@@ -50,21 +54,34 @@ class PolicyGroup(HintingGroup):
             ctx.exit(130)
         except Exception as error:
             if ctx.meta.get(_DEBUG):
-                traceback.print_exception(error)
+                say("".join(traceback.format_exception(error)).rstrip("\n"), err=True)
             error = _understood(error)
             for line in _lines(error):
-                click.echo(_visible(line), err=True)
+                click.echo(printable(line), err=True)
             ctx.exit(getattr(error, "exit_code", 1))
 
 
 def say_error(message):
     """Print one line on standard error."""
-    click.echo(f"goniosim: {message}", err=True)
+    click.echo(f"goniosim: {printable(message)}", err=True)
 
 
-def _visible(line):
-    """The line with what would move the cursor, or worse, written out: names of files may hold anything."""
-    return "".join(c if ord(c) > 159 or c.isprintable() else repr(c)[1:-1] for c in line)
+def say(text, err=False):
+    """Print text that may hold names from files: whatever a terminal would obey is written out."""
+    click.echo("\n".join(map(printable, str(text).split("\n"))), err=err)
+
+
+def _say_what_was_annotated():
+    usual = warnings.showwarning
+
+    def show(message, category, *place):
+        if issubclass(category, AnnotatedFileWarning):
+            say_error(f"note: {message}")
+        else:
+            usual(message, category, *place)
+
+    warnings.simplefilter("always", AnnotatedFileWarning)
+    warnings.showwarning = show
 
 
 def _understood(error):

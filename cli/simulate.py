@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from .options import PATH, Count, set_option
-from .policy import debug_option
+from .policy import debug_option, say
 from .signals import StopSignals
 
 
@@ -66,6 +66,6 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, qui
             done.append(study.row(result, job.path) if many else summary(result, job.path))
             del result
     if done and not quiet:
-        click.echo(study.study_text(done) if many else done[0])
+        say(study.study_text(done) if many else done[0])
     if signals.signum is not None:
         ctx.exit(signals.exit_code)

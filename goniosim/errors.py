@@ -104,6 +104,10 @@ class DamagedFileError(GoniosimError):
     exit_code = 6
 
 
+class AnnotatedFileWarning(UserWarning):
+    """Something was added to a file after it was written; all that goniosim wrote is unchanged."""
+
+
 class NewerSchemaError(GoniosimError):
     """The file follows a schema version that this goniosim cannot read."""
 

@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,6 +26,31 @@ _REMEDIES = {
     errno.EAGAIN: "raise the limit on processes and threads (ulimit -u), or use fewer threads",
     errno.ENOMEM: "free some memory, raise the limit on it, or use fewer threads",
 }
+
+
+def printable(text: object, most: int = 0) -> str:
+    r"""Text as one line that a terminal shows and does not obey.
+
+    Parameters
+    ----------
+    text : object
+        From a file or a file name, which may hold escape sequences and line breaks.
+    most : int
+        Cut after so many characters; 0 for no limit.
+
+    Returns
+    -------
+    str
+        Characters that cannot be printed are written as in Python: ``\x1b``.
+    """
+    shown = str(text)
+    cut = f"{shown[:most]}..." if 0 < most < len(shown) else shown
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in cut)
+
+
+def file_name(name: str) -> str:
+    """A name from data as a part of a file name: it leads to no other folder, and no shell trips over it."""
+    return re.sub(r"[^A-Za-z0-9._+=,-]", "_", name).lstrip(".")[:200] or "_"
 
 
 def make_folder(folder: StrPath) -> None:

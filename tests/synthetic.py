@@ -6,12 +6,20 @@ from goniosim.result import AUDIT_ENTRIES, Audit, Cells, Component, Cost, Result
 
 CONFIG = """\
 material:
-  name: synthetic
+  name: {name}
   layers:
+{layers}\
+incident: {{theta_deg: {theta_deg}}}
+slice: {{parametrization: {parametrization}, rows: {rows}, columns: {columns}}}
+simulation: {{rays: {rays}, seed: {seed}}}
+"""
+COATED = """\
     - interface: {type: dielectric, eta: 1.5, alpha: 0.2}
     - medium: {tau: [0.05, 0.1, 0.8]}
     - interface: {type: lambert, rho: 0.5}
-incident: {theta_deg: [0, 60]}
+"""
+BARE = """\
+    - interface: {type: conductor, eta: 1.5, kappa: 1.0, alpha: 0.2}
 """
 
 
@@ -27,7 +35,7 @@ def make_result(
     rays=100_000,
     status="complete",
     name="synthetic",
-    config_yaml=CONFIG,
+    config_yaml=None,
     seed=1,
 ):
     """Make up a result: hits are Poisson counts, energies carry continuous weights as absorption gives.
@@ -45,7 +53,9 @@ def make_result(
         Last order told apart in the components that are sampled; 0 for none.
     rays : int
         Rays per incident direction.
-    status, name, config_yaml : str
+    status, name : str
+    config_yaml : str, optional
+        A scene to which all this belongs by default.
     seed : int
         Of the made-up numbers, and the seed that the result claims.
 
@@ -57,8 +67,18 @@ def make_result(
     cells = _cells(parametrization, len(theta_deg), rows, columns)
     made = {path: _component(path, rng, cells, len(channels), rays, orders) for path in components}
     totals = {path: component.energy.sum(axis=(2, 3)) for path, component in made.items()}
+    scene = CONFIG.format(
+        name=name,
+        layers=COATED if "reflection/internal" in components else BARE,
+        theta_deg=[float(theta) for theta in theta_deg],
+        parametrization=parametrization,
+        rows=rows,
+        columns=columns,
+        rays=rays,
+        seed=seed,
+    )
     return Result(
-        config_yaml=config_yaml,
+        config_yaml=scene if config_yaml is None else config_yaml,
         config_hash="5" * 64,
         name=name,
         status=status,

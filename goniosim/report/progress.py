@@ -7,6 +7,7 @@ it, say a ``note``, ``close``.
 import sys
 import time
 
+from ..writing import printable
 from . import text
 
 FIRST_LINE = 5.0
@@ -123,6 +124,7 @@ class Bar(_Shown):
 
     def note(self, message):
         """Show a line of text."""
+        message = printable(message)
         if self._bar is None:
             self._try(print, message, file=self.stream, flush=True)
         else:
@@ -177,7 +179,7 @@ class LogLines(_Shown):
 
     def note(self, message):
         """Show a line of text."""
-        self._try(self._write, f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {message}\n")
+        self._try(self._write, f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {printable(message)}\n")
 
     def _write(self, line):
         self.stream.write(line)

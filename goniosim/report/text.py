@@ -5,6 +5,11 @@ from collections import Counter
 
 import numpy as np
 
+from ..writing import printable
+
+# Characters of a value from a file.
+LONGEST_VALUE = 200
+
 
 def with_error(value, stderr, decimals=5):
     """Format a value with its standard error, as in ``0.04321 ± 0.00002``.
@@ -145,9 +150,9 @@ def table(header, rows, indent="  ", gap="   "):
 
 
 def pairs(mapping):
-    """Lay out names and values in two columns, sorted by name."""
+    """Lay out names and values in two columns, sorted by name; each value in one line that is not too long."""
     width = max(map(len, mapping), default=0)
-    return [f"  {name.ljust(width)}   {value}" for name, value in sorted(mapping.items())]
+    return [f"  {name.ljust(width)}   {printable(value, LONGEST_VALUE)}" for name, value in sorted(mapping.items())]
 
 
 def channel_groups(names, arrays):

@@ -1,11 +1,14 @@
 """How datasets and texts are put into HDF5: the same for results and for integrated models."""
 
+import hashlib
 from typing import Any
 
 import h5py
 import numpy as np
 
-from goniosim.store.layout import SCALES, Dataset
+from goniosim.store import manifest, seal
+from goniosim.store.access import chunk_shape
+from goniosim.store.layout import CHECKSUMS, SCALES, Dataset
 
 # Any HDF5 since 1.10 (2016) can read this format, and the bytes do not depend on the installed one.
 FORMAT = ("v110", "v110")
@@ -34,13 +37,12 @@ def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> N
     # HDF5 cannot chunk an empty dataset, and there is nothing in it to protect.
     filters = {}
     if values.size:
-        # One slice per chunk. Level 1: level 4 saves 1 % of Monte Carlo noise, shuffling 10 %.
-        chunks = (1,) * (values.ndim - 2) + values.shape[-2:]
-        filters = {"chunks": chunks, "fletcher32": True, "shuffle": True, "compression": 1}
+        # Level 1: level 4 saves 1 % of Monte Carlo noise, shuffling 10 %.
+        filters = {"chunks": chunk_shape(values.shape), "fletcher32": True, "shuffle": True, "compression": 1}
     dataset = root.create_dataset(path, data=values, track_times=False, **filters)
 
-    write_text(dataset, "units", entry.unit)
-    write_text(dataset, "long_name", entry.meaning)
+    _write_meaning(dataset, entry)
+    write_text(dataset, manifest.VALUES, manifest.digest_of_values(values))
     if entry.dtype == "bool":
         write_text(dataset, "dtype", "bool")
     if entry.dtype == "text":
@@ -51,6 +53,35 @@ def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> N
         for axis, dim in enumerate(entry.dims):
             dataset.dims[axis].attach_scale(root[SCALES[dim]])
         _link_coordinates(root, path, dataset, entry)
+
+
+def reserve_seal(file: h5py.File) -> int:
+    """Make room for the seal, before anything else is written; return its place in the file."""
+    dataset = _write_scalar(file, CHECKSUMS[0], bytes(seal.SIZE), seal.SIZE)
+    # The file grows only now.
+    file.flush()
+    place = dataset.id.get_offset()
+    assert place + seal.SIZE <= seal.WINDOW
+    return place
+
+
+def write_manifest(file: h5py.File) -> str:
+    """Write the manifest, after everything else; return its digest for the seal."""
+    text = manifest.build(file)
+    _write_scalar(file, CHECKSUMS[1], text, len(text))
+    return hashlib.sha256(text).hexdigest()
+
+
+def _write_scalar(file: h5py.File, entry: Dataset, text: bytes, size: int) -> h5py.Dataset:
+    kind = h5py.string_dtype("utf-8", size)
+    dataset = file.create_dataset(entry.path, data=np.array(text, kind), dtype=kind, track_times=False)
+    _write_meaning(dataset, entry)
+    return dataset
+
+
+def _write_meaning(dataset: h5py.Dataset, entry: Dataset) -> None:
+    write_text(dataset, "units", entry.unit)
+    write_text(dataset, "long_name", entry.meaning)
 
 
 def _link_coordinates(root: h5py.Group, path: str, dataset: h5py.Dataset, entry: Dataset) -> None:
@@ -71,7 +102,7 @@ def stored(path: str, values: Any, dtype: str) -> np.ndarray:
         return np.array(raw).astype(h5py.string_dtype("utf-8", max(1, *map(len, raw))))
     if dtype == "bool":
         return np.asarray(values).astype(bool, casting="safe").astype(np.int8)
-    values = np.asarray(values).astype(dtype, casting="safe", copy=False)
+    values = np.asarray(values).astype(np.dtype(dtype).newbyteorder("<"), casting="safe", copy=False)
     if not np.isfinite(values).all():
         raise ValueError(f"{path} holds NaN or infinity")
     return values

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -19,7 +18,9 @@ from goniosim.errors import (
 from goniosim.result import Result
 from goniosim.scene import Scene, differences, parse_scene
 from goniosim.scene.model import MAX_DIRECTIONS
-from goniosim.store import userblock
+from goniosim.store import access
+from goniosim.store.kinds import RESULT
+from goniosim.store.opening import decoding, opened
 from goniosim.store.output import reserve_output
 from goniosim.store.reader import read_header
 from goniosim.writing import StrPath
@@ -147,21 +148,18 @@ def _scene(config_yaml: str) -> Scene | None:
 
 def _verify(path: StrPath) -> None:
     """Check every byte of a result file without decoding it."""
-    with userblock.open_regular(path) as stream:
-        userblock.verify(stream, userblock.read(stream, path), path)
+    with opened(path, RESULT):
+        pass
 
 
 def _rays(path: StrPath) -> np.ndarray:
     """Rays traced from each direction, shape (M,), without reading the whole file."""
-    try:
-        with h5py.File(path, "r", locking=False) as file:
-            rays, angles = file["incident/rays"], file["incident/theta_deg"]
-            # Read only what cannot be huge.
-            if rays.shape == angles.shape and len(rays.shape) == 1 and rays.shape[0] <= MAX_DIRECTIONS:
-                return np.asarray(rays[()]).astype(np.int64, casting="safe")
-    except (OSError, RuntimeError, LookupError, TypeError, ValueError, AttributeError):
-        pass
-    raise DamagedFileError(f"{path}: does not say how many rays were traced; simulate again")
+    with opened(path, RESULT, whole=False) as (file, _), decoding(path, RESULT.remedy):
+        rays = access.dataset(file, "incident/rays")
+        # Read only what cannot be huge.
+        if len(rays.shape) == 1 and rays.shape[0] <= MAX_DIRECTIONS:
+            return access.read(rays).astype(np.int64, casting="safe")
+    raise DamagedFileError(f"{path}: does not say how many rays were traced; {RESULT.remedy}")
 
 
 def _newer(error: NewerSchemaError) -> OutputError:

@@ -10,10 +10,13 @@ against it. Upper-case parts of a path stand for names that vary:
 import re
 from dataclasses import dataclass
 
-from goniosim.result import AUDIT_ENTRIES
+import numpy as np
 
-FILETYPE = "goniosim-result"
-SCHEMA_VERSION = "1.0"
+from goniosim.result import AUDIT_ENTRIES
+from goniosim.store.kinds import RESULT
+
+FILETYPE = RESULT.filetype
+SCHEMA_VERSION = RESULT.schema_version
 COMPONENTS = ("reflection/direct", "reflection/internal", "transmission")
 
 SIZES = {
@@ -39,6 +42,46 @@ SCALES = {
 
 
 @dataclass(frozen=True)
+class Range:
+    """Which numbers a dataset may hold; whatever the range, they are finite.
+
+    Attributes
+    ----------
+    low, high : float
+        Both included.
+    open_high : bool
+        Whether ``high`` itself is excluded.
+    """
+
+    low: float = -np.inf
+    high: float = np.inf
+    open_high: bool = False
+
+    def holds(self, values: np.ndarray) -> bool:
+        """Whether all numbers of an array lie in the range and are finite."""
+        if not values.size:
+            return True
+        # A NaN anywhere makes both of them NaN, and every comparison false.
+        low, high = values.min(), values.max()
+        below = high < self.high if self.open_high else high <= self.high
+        return bool(self.low <= low and below and -np.inf < low and high < np.inf)
+
+    def __str__(self) -> str:
+        if self == ANY:
+            return "finite"
+        if self.high == np.inf:
+            return f"finite and {self.low:g} or more"
+        return f"from {self.low:g} to {'below ' if self.open_high else ''}{self.high:g}"
+
+
+ANY = Range()
+NOT_NEGATIVE = Range(0)
+POLAR = Range(0, 90, open_high=True)
+AZIMUTH = Range(0, 360, open_high=True)
+FLAG = Range(0, 1)
+
+
+@dataclass(frozen=True)
 class Dataset:
     """One dataset, or one family of datasets, of a result file.
 
@@ -52,6 +95,8 @@ class Dataset:
         ``float64``, ``int64``, ``bool`` or ``text``.
     unit, meaning : str
         Written to the attributes ``units`` and ``long_name``.
+    range : Range
+        Of its numbers.
     """
 
     path: str
@@ -59,6 +104,7 @@ class Dataset:
     dtype: str
     unit: str
     meaning: str
+    range: Range = ANY
 
     @property
     def is_scale(self) -> bool:
@@ -76,43 +122,63 @@ class Attribute:
     meaning: str
 
 
+CHECKSUMS = (
+    Dataset("checksums/file", (), "text", "1", "the seal: schema, length and digest of the file"),
+    Dataset("checksums/content", (), "text", "1", "digest of every group and dataset with its attributes, as JSON"),
+)
+
 _SLICE = ("direction", "channel", "row", "column")
 _CELL = ("direction", "row", "column")
 _TOTAL = ("direction", "channel")
 
 DATASETS = (
-    Dataset("direction", ("direction",), "int64", "1", "number of the incident direction"),
+    Dataset("direction", ("direction",), "int64", "1", "number of the incident direction", NOT_NEGATIVE),
     Dataset("channel", ("channel",), "text", "1", "name of the colour channel"),
-    Dataset("row", ("row",), "float64", "degree", "row coordinate at the centre of the row"),
-    Dataset("column", ("column",), "float64", "degree", "azimuth at the centre of the column"),
-    Dataset("incident/theta_deg", ("direction",), "float64", "degree", "polar angle of the incident light"),
-    Dataset("incident/phi_deg", ("direction",), "float64", "degree", "azimuth of the incident light"),
-    Dataset("incident/rays", ("direction",), "int64", "1", "rays traced from the direction"),
+    Dataset("row", ("row",), "float64", "degree", "row coordinate at the centre of the row", NOT_NEGATIVE),
+    Dataset("column", ("column",), "float64", "degree", "azimuth at the centre of the column", NOT_NEGATIVE),
+    Dataset("incident/theta_deg", ("direction",), "float64", "degree", "polar angle of the incident light", POLAR),
+    Dataset("incident/phi_deg", ("direction",), "float64", "degree", "azimuth of the incident light", AZIMUTH),
+    Dataset("incident/rays", ("direction",), "int64", "1", "rays traced from the direction", NOT_NEGATIVE),
     Dataset("channels/name", ("channel",), "text", "1", "name of the colour channel"),
-    Dataset("cells/row_edges", ("row_edges",), "float64", "degree", "row coordinate at the edges of the rows"),
-    Dataset("cells/column_edges", ("column_edges",), "float64", "degree", "azimuth at the edges of the columns"),
-    Dataset("cells/valid", _CELL, "bool", "1", "whether the cell lies wholly above the horizon"),
-    Dataset("cells/solid_angle", _CELL, "float64", "sr", "solid angle of the part above the horizon"),
+    Dataset(
+        "cells/row_edges", ("row_edges",), "float64", "degree", "row coordinate at the edges of the rows", Range(0, 90)
+    ),
+    Dataset(
+        "cells/column_edges",
+        ("column_edges",),
+        "float64",
+        "degree",
+        "azimuth at the edges of the columns",
+        Range(0, 360),
+    ),
+    Dataset("cells/valid", _CELL, "bool", "1", "whether the cell lies wholly above the horizon", FLAG),
+    Dataset("cells/solid_angle", _CELL, "float64", "sr", "solid angle of the part above the horizon", NOT_NEGATIVE),
     Dataset(
         "cells/projected_solid_angle",
         _CELL,
         "float64",
         "sr",
         "integral of cos(theta_v) over the part above the horizon",
+        NOT_NEGATIVE,
     ),
-    Dataset("COMPONENT/energy", _SLICE, "float64", "1", "fraction of the incident flux"),
-    Dataset("COMPONENT/stderr", _SLICE, "float64", "1", "standard error of energy"),
-    Dataset("COMPONENT/bsdf", _SLICE, "float64", "sr-1", "BSDF averaged over the cell"),
-    Dataset("COMPONENT/bsdf_stderr", _SLICE, "float64", "sr-1", "standard error of bsdf"),
-    Dataset("COMPONENT/hits", _CELL, "int64", "1", "paths that deposited energy in the cell"),
+    Dataset("COMPONENT/energy", _SLICE, "float64", "1", "fraction of the incident flux", NOT_NEGATIVE),
+    Dataset("COMPONENT/stderr", _SLICE, "float64", "1", "standard error of energy", NOT_NEGATIVE),
+    Dataset("COMPONENT/bsdf", _SLICE, "float64", "sr-1", "BSDF averaged over the cell", NOT_NEGATIVE),
+    Dataset("COMPONENT/bsdf_stderr", _SLICE, "float64", "sr-1", "standard error of bsdf", NOT_NEGATIVE),
+    Dataset("COMPONENT/hits", _CELL, "int64", "1", "paths that deposited energy in the cell", NOT_NEGATIVE),
     *(Dataset(f"audit/{entry}", _TOTAL, "float64", "1", meaning) for entry, meaning in AUDIT_ENTRIES.items()),
-    Dataset("audit/ENTRY_stderr", _TOTAL, "float64", "1", "standard error of the audit entry"),
-    Dataset("audit/direct_integrated", _TOTAL, "float64", "1", "direct reflection integrated over the cells"),
-    Dataset("audit/direct_integrated_stderr", _TOTAL, "float64", "1", "standard error of direct_integrated"),
-    Dataset("cost/rays", ("rays",), "float64", "1", "rays per incident direction up to the checkpoint"),
-    Dataset("cost/seconds", ("rays",), "float64", "s", "elapsed time of tracing"),
-    Dataset("cost/cpu_seconds", ("rays",), "float64", "s", "processor time of tracing"),
-    Dataset("cost/error_SAMPLED", ("rays",), "float64", "sr-0.5", "noise floor of the component"),
+    Dataset("audit/ENTRY_stderr", _TOTAL, "float64", "1", "standard error of the audit entry", NOT_NEGATIVE),
+    Dataset(
+        "audit/direct_integrated", _TOTAL, "float64", "1", "direct reflection integrated over the cells", NOT_NEGATIVE
+    ),
+    Dataset(
+        "audit/direct_integrated_stderr", _TOTAL, "float64", "1", "standard error of direct_integrated", NOT_NEGATIVE
+    ),
+    Dataset("cost/rays", ("rays",), "float64", "1", "rays per incident direction up to the checkpoint", NOT_NEGATIVE),
+    Dataset("cost/seconds", ("rays",), "float64", "s", "elapsed time of tracing", NOT_NEGATIVE),
+    Dataset("cost/cpu_seconds", ("rays",), "float64", "s", "processor time of tracing", NOT_NEGATIVE),
+    Dataset("cost/error_SAMPLED", ("rays",), "float64", "sr-0.5", "noise floor of the component", NOT_NEGATIVE),
+    *CHECKSUMS,
 )
 
 ATTRIBUTES = (

@@ -10,8 +10,11 @@ from typing import Self
 
 from goniosim.errors import OutputError
 from goniosim.parts import Part, remove_dead, turn
-from goniosim.store import userblock
+from goniosim.store.kinds import RESULT
+from goniosim.store.opening import kind_of
 from goniosim.writing import NO_ROOM, StrPath, explained, remedy
+
+Buffer = bytes | memoryview
 
 
 class Reservation:
@@ -66,12 +69,12 @@ class Reservation:
             if getattr(error, "errno", None) in NO_ROOM:
                 raise
 
-    def commit(self, parts: Sequence[bytes], check: Callable[[], None]) -> None:
+    def commit(self, parts: Sequence[Buffer], check: Callable[[], None]) -> None:
         """Put the finished file in place: readers see the old file or the new one, never a mixture.
 
         Parameters
         ----------
-        parts : sequence of bytes
+        parts : sequence of bytes-like
             The content, one part after the other.
         check : callable
             Called when no other run replaces the target; raises an OutputError if what stands there must stay.
@@ -153,12 +156,12 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     return reservation
 
 
-def rescue(parts: Sequence[bytes], path: StrPath) -> str:
+def rescue(parts: Sequence[Buffer], path: StrPath) -> str:
     """Save finished work in the temporary directory.
 
     Parameters
     ----------
-    parts : sequence of bytes
+    parts : sequence of bytes-like
         Content of the file.
     path : path-like
         Where it should have gone.
@@ -186,13 +189,13 @@ def rescue(parts: Sequence[bytes], path: StrPath) -> str:
 def _refuse_to_destroy(target: Path, shown: StrPath) -> None:
     if target.is_dir():
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
-    if target.exists() and not userblock.is_result(target):
+    if target.exists() and kind_of(target)[0] is not RESULT:
         raise OutputError(
             f"{shown}: exists and is not a goniosim result, so it is not overwritten; choose another name or remove it"
         )
 
 
-def _write(descriptor: int, parts: Sequence[bytes]) -> None:
+def _write(descriptor: int, parts: Sequence[Buffer]) -> None:
     """Write, cut to length and sync."""
     position = 0
     for part in parts:

@@ -1,25 +1,29 @@
 """From a result file back to a result in memory; every way in which a file can be wrong has its own error."""
 
-import contextlib
 import re
-from collections.abc import Callable, Iterator
-from typing import Any, BinaryIO
+from collections.abc import Callable
+from typing import Any
 
 import h5py
 
-from goniosim.errors import DamagedFileError, ForeignFileError, UnusableResultError
 from goniosim.result import AUDIT_ENTRIES, Audit, Component, Cost, Result
-from goniosim.store import userblock
-from goniosim.store.decoding import attributes, cells, decoding, find, find_shaped, values
-from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, SCALES, describe
-from goniosim.store.models.reader import is_models_file
+from goniosim.store import access, validation
+from goniosim.store.decoding import cells, shaped, values
+from goniosim.store.kinds import RESULT
+from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, describe
+from goniosim.store.manifest import Manifest, NoManifest
+from goniosim.store.opening import decoding, opened
 from goniosim.writing import StrPath
 
-_ORDER = re.compile(r"order_(\d+)(?:_and_more)?")
+Ours = Manifest | NoManifest
+
+_ORDER = re.compile(r"order_(\d{1,3})(?:_and_more)?", re.ASCII)
 
 
 def open_result(path: StrPath) -> Result:
     """Read a result file and check every byte of it.
+
+    Warns with `goniosim.errors.AnnotatedFileWarning` if something was added to the file after it was written.
 
     Parameters
     ----------
@@ -34,7 +38,7 @@ def open_result(path: StrPath) -> Result:
     ForeignFileError
         If the file is missing or is not a goniosim result.
     DamagedFileError
-        If it was truncated or altered since it was written.
+        If it was truncated or altered since it was written, or says what no result can say.
     NewerSchemaError
         If its major schema version is newer than this goniosim reads.
     UnusableResultError
@@ -45,11 +49,8 @@ def open_result(path: StrPath) -> Result:
     >>> goniosim.open_result("result.h5").status
     'complete'
     """
-    with userblock.open_regular(path) as stream:
-        block = _user_block(stream, path)
-        userblock.verify(stream, block, path)
-        with _hdf5(stream, path) as file:
-            return _result(file)
+    with opened(path, RESULT) as (file, ours), decoding(path, RESULT.remedy):
+        return _result(file, ours)
 
 
 def read_header(path: StrPath) -> dict[str, str | int]:
@@ -72,48 +73,29 @@ def read_header(path: StrPath) -> dict[str, str | int]:
     ForeignFileError, DamagedFileError, NewerSchemaError, UnusableResultError
         As `open_result`.
     """
-    with userblock.open_regular(path) as stream:
-        block = _user_block(stream, path)
-        with _hdf5(stream, path) as file:
-            found = attributes(file)
-        if userblock.attributes_digest(found) != block.attributes_digest:
-            raise DamagedFileError(f"{path}: its root attributes are damaged; {userblock.REMEDY}")
-        return found
+    with opened(path, RESULT, whole=False) as (file, ours), decoding(path, RESULT.remedy):
+        return _header(file, ours)
 
 
-def _user_block(stream: BinaryIO, path: StrPath) -> userblock.UserBlock:
-    try:
-        return userblock.read(stream, path)
-    except ForeignFileError:
-        if is_models_file(path):
-            raise UnusableResultError(
-                f"{path}: holds integrated models and no simulation; name a file that `goniosim simulate` wrote "
-                "(`goniosim info`, `goniosim plot` and goniosim.store.open_models take this one)"
-            ) from None
-        raise
+def _header(file: h5py.File, ours: Ours) -> dict[str, str | int]:
+    header = {name: access.attribute(file, name) for name in ours.attributes("")}
+    validation.check(validation.HEADER, header)
+    return header
 
 
-@contextlib.contextmanager
-def _hdf5(stream: BinaryIO, path: StrPath) -> Iterator[h5py.File]:
-    """The HDF5 part of an open file; whatever HDF5 or h5py trips over is damage.
-
-    Reading through the stream that was verified leaves no moment in which
-    another file could take its place, and needs no file locks, which some
-    network file systems lack.
-    """
-    with decoding(path, userblock.REMEDY), h5py.File(stream, "r") as file:
-        yield file
-
-
-def _result(file: h5py.File) -> Result:
-    sizes = {dim: len(find(file, scale)) for dim, scale in SCALES.items()}
+def _result(file: h5py.File, ours: Ours) -> Result:
+    header: dict[str, Any] = _header(file, ours)
+    scene = validation.scene_of(header["config_yaml"])
+    validation.check(validation.HEADER_AND_SCENE, header, scene)
+    checkpoints = access.dataset(file, "cost/rays").size or 0
+    sizes = {**validation.sizes_of(scene), "rays": min(checkpoints, validation.MAX_CHECKPOINTS)}
 
     def read(path: str) -> Any:
         entry = describe(path)
-        return values(find_shaped(file, path, entry, sizes), entry)
+        return values(shaped(file, path, entry, sizes), entry)
 
-    header = attributes(file)
-    return Result(
+    effects = access.group(file, "effects")
+    result = Result(
         config_yaml=header["config_yaml"],
         config_hash=header["config_hash"],
         name=header["name"],
@@ -124,39 +106,42 @@ def _result(file: h5py.File) -> Result:
         rays=read("incident/rays"),
         channels=read("channels/name"),
         cells=cells(file, read),
-        components={path: _component(file, path, read) for path in COMPONENTS if path in file},
+        components={path: _component(file, ours, path, read) for path in COMPONENTS if ours.has(path)},
         audit=Audit(
             energy={entry: read(f"audit/{entry}") for entry in AUDIT_ENTRIES},
             stderr={entry: read(f"audit/{entry}_stderr") for entry in AUDIT_ENTRIES},
             direct_integrated=read("audit/direct_integrated"),
             direct_integrated_stderr=read("audit/direct_integrated_stderr"),
         ),
-        cost=_cost(file, read),
-        effects={name: bool(called_for) for name, called_for in file["effects"].attrs.items()},
+        cost=_cost(ours, read),
+        effects={name: access.flag(effects, name) for name in ours.attributes("effects")},
         provenance={
             name: value for name, value in header.items() if name not in NOT_PROVENANCE and isinstance(value, str)
         },
     )
+    validation.check(validation.GEOMETRY, result, scene)
+    validation.check(validation.RESULT, result, scene)
+    return result
 
 
-def _component(file: h5py.File, path: str, read: Callable[[str], Any]) -> Component:
-    orders = sorted((int(match[1]), match[0]) for match in map(_ORDER.fullmatch, file[path]) if match)
+def _component(file: h5py.File, ours: Ours, path: str, read: Callable[[str], Any]) -> Component:
+    orders = sorted((int(match[1]), match[0]) for match in map(_ORDER.fullmatch, ours.members(path)) if match)
     return Component(
         energy=read(f"{path}/energy"),
         stderr=read(f"{path}/stderr"),
         bsdf=read(f"{path}/bsdf"),
         bsdf_stderr=read(f"{path}/bsdf_stderr"),
-        hits=read(f"{path}/hits") if "hits" in file[path] else None,
-        contains_delta=bool(file[path].attrs["contains_delta"]),
-        orders={name: _component(file, f"{path}/{name}", read) for _, name in orders},
+        hits=read(f"{path}/hits") if ours.has(f"{path}/hits") else None,
+        contains_delta=access.flag(access.group(file, path), "contains_delta"),
+        orders={name: _component(file, ours, f"{path}/{name}", read) for _, name in orders},
     )
 
 
-def _cost(file: h5py.File, read: Callable[[str], Any]) -> Cost:
+def _cost(ours: Ours, read: Callable[[str], Any]) -> Cost:
     errors = {component: f"cost/error_{component.replace('/', '_')}" for component in COMPONENTS}
     return Cost(
         rays=read("cost/rays"),
         seconds=read("cost/seconds"),
         cpu_seconds=read("cost/cpu_seconds"),
-        error={component: read(path) for component, path in errors.items() if path in file},
+        error={component: read(path) for component, path in errors.items() if ours.has(path)},
     )

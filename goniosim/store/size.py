@@ -6,8 +6,8 @@
 _BYTES_PER_FLOAT = 7.2
 _BYTES_PER_COUNT = 2.0
 # Measured on slices of a single cell.
-_BYTES_PER_GROUP = 6_000
-_BYTES_OF_THE_REST = 32_000
+_BYTES_PER_GROUP = 7_500
+_BYTES_OF_THE_REST = 44_000
 
 
 def predicted_size(

@@ -1,5 +1,6 @@
 """From a result in memory to the bytes of a file."""
 
+import io
 import uuid
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -8,12 +9,13 @@ import h5py
 import numpy as np
 
 from goniosim.result import Component, Result
-from goniosim.store import userblock
-from goniosim.store.encoding import FORMAT, utf8, write_dataset, write_text
+from goniosim.store import seal
+from goniosim.store.encoding import FORMAT, reserve_seal, utf8, write_dataset, write_manifest, write_text
+from goniosim.store.kinds import RESULT
 from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, describe
 
 
-def encode(result: Result) -> tuple[bytes, bytes]:
+def encode(result: Result) -> tuple[memoryview | bytes, ...]:
     """Bytes of a result file.
 
     Equal results give equal bytes: no clock and no random number goes in.
@@ -24,8 +26,8 @@ def encode(result: Result) -> tuple[bytes, bytes]:
 
     Returns
     -------
-    tuple of bytes
-        The user block and the HDF5 image that follows it.
+    tuple of bytes-like
+        The file, one part after the other: what comes before the seal, the seal, and the rest.
 
     Raises
     ------
@@ -42,9 +44,8 @@ def encode(result: Result) -> tuple[bytes, bytes]:
         "column_edges": len(result.cells.column_edges),
         "rays": len(result.cost.rays),
     }
-    with h5py.File(
-        uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=FORMAT, userblock_size=userblock.SIZE
-    ) as file:
+    with h5py.File(uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=FORMAT) as file:
+        place = reserve_seal(file)
         for path, values in arrays(result):
             entry = describe(path)
             shape = tuple(sizes[dim] for dim in entry.dims)
@@ -62,9 +63,12 @@ def encode(result: Result) -> tuple[bytes, bytes]:
                 file.attrs[name] = np.uint64(value)
             else:
                 write_text(file, name, value)
+        content_digest = write_manifest(file)
         file.flush()
         image = file.id.get_file_image()
-    return userblock.make(image, attributes), image
+    digest = seal.digest(io.BytesIO(image), place)
+    view = memoryview(image)
+    return view[:place], seal.make(RESULT, len(image), digest, content_digest), view[place + seal.SIZE :]
 
 
 def root_attributes(result: Result) -> dict[str, str | int]:

@@ -3,7 +3,6 @@
 import csv
 import json
 import re
-import zlib
 from pathlib import Path
 
 import h5py
@@ -12,9 +11,10 @@ import pytest
 import xarray as xr
 from click.testing import CliRunner
 
+from crafting import craft
 from goniosim.compare.rows import COLUMNS
 from goniosim.scene import parse_scene
-from goniosim.store import layout, open_result, userblock, write_result
+from goniosim.store import layout, open_result, write_result
 from synthetic import make_result
 
 METAL = """\
@@ -225,12 +225,7 @@ def test_foreign_newer_and_missing_files_are_refused(tmp_path):
     assert run("compare", tmp_path / "foreign.h5")[0] == 5
     assert run("compare", tmp_path / "missing.h5")[0] == 5
     write_result(make_result(), tmp_path / "newer.h5")
-    content = bytearray((tmp_path / "newer.h5").read_bytes())
-    first = userblock.MAGIC + layout.SCHEMA_VERSION.encode()
-    content[: len(first)] = userblock.MAGIC + b"9.0"
-    checksum = f"{zlib.crc32(bytes(content[:503])):08x}\n".encode()
-    content[503:512] = checksum
-    (tmp_path / "newer.h5").write_bytes(content)
+    craft(tmp_path / "newer.h5", version="9.0")
     assert run("compare", tmp_path / "newer.h5")[0] == 7
 
 

@@ -2,6 +2,7 @@
 
 import json
 
+import h5py
 import numpy as np
 import pytest
 from matplotlib.image import imread
@@ -64,3 +65,13 @@ def test_schema_is_the_one_of_the_scene_package(goniosim):
     code, out, _ = goniosim("schema")
     assert code == 0
     assert json.loads(out) == json_schema()
+
+
+@pytest.mark.parametrize("command", [["info"], ["info", "--json"], ["plot", "--theta", "60", "--format", "svg"]])
+def test_a_note_that_was_added_is_told_and_no_damage(goniosim, result, folder, command):
+    sound = goniosim(command[0], "result.h5", *command[1:])
+    with h5py.File("result.h5", "r+") as file:
+        file.attrs["note"] = "mine"
+    code, out, err = goniosim(command[0], "result.h5", *command[1:])
+    assert (code, out.splitlines()[1:]) == (0, sound[1].splitlines()[1:])
+    assert err.startswith("goniosim: note: result.h5: annotated: something was added") and err.count("\n") == 1

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from crafting import craft
 from goniosim.store import open_models, open_result, write_result
 from synthetic import make_result, write_models
 
@@ -39,7 +40,7 @@ def test_info_lists_materials_and_models(goniosim, models):
     assert (code, err) == (0, "")
     lines = [" ".join(line.split()) for line in out.splitlines()]
     assert lines[0].startswith("models.h5 (")
-    assert lines[1] == "Integrated models of 2 materials, schema 1.1"
+    assert lines[1] == "Integrated models of 2 materials, schema 1.2"
     assert "amber reflection/internal classic, 6 x 8 R G B 1e5 2" in lines
     assert "incident theta [deg]: 0, 60" in lines
     assert "ww09 default reflection/direct, reflection/internal 2 of 2" in lines
@@ -136,8 +137,7 @@ def test_damaged_foreign_and_newer_files(goniosim, models, folder, command):
         assert code == 6
         one_line(err, "models.h5", "compare again")
     models.write_bytes(raw)
-    with h5py.File(models, "r+") as file:
-        file.attrs["schema_version"] = np.bytes_("2.0")
+    craft(models, version="2.0")
     code, _, err = goniosim(command, "models.h5")
     assert code == 7
     one_line(err, "schema 2.0", "update goniosim")
@@ -146,6 +146,14 @@ def test_damaged_foreign_and_newer_files(goniosim, models, folder, command):
     code, _, err = goniosim(command, "other.h5")
     assert code == 5
     one_line(err, "other.h5", "not a goniosim result")
+
+
+def test_a_note_that_was_added_is_told_and_no_damage(goniosim, models):
+    with h5py.File(models, "r+") as file:
+        file["zinc"].attrs["note"] = "mine"
+    code, out, err = goniosim("info", "models.h5")
+    assert code == 0 and "zinc" in out
+    assert err.startswith("goniosim: note: models.h5: annotated: something was added") and err.count("\n") == 1
 
 
 def test_compare_with_a_file_of_models_is_8(goniosim, models):
@@ -204,6 +212,6 @@ def test_a_name_that_leads_elsewhere_is_refused(goniosim, results, folder):
     """Names of materials become names of files; a file from a stranger may hold any."""
     write_result(make_result(components=INTERNAL, name="../../escaped"), results / "plastic.h5", overwrite=True)
     code, _, err = goniosim("compare", results, "-o", folder / "report")
-    assert code == 8
-    one_line(err, "plastic.h5", "name")
+    assert code == 6
+    one_line(err, "plastic.h5", "name must be usable as a file name")
     assert not (folder / "report").exists()

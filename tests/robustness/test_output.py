@@ -75,7 +75,7 @@ def test_an_earlier_result_is_replaced(folder):
 
 def test_a_damaged_result_is_replaced(folder):
     write_result(make_result(), folder / "r.h5")
-    (folder / "r.h5").write_bytes((folder / "r.h5").read_bytes()[:1000])
+    (folder / "r.h5").write_bytes((folder / "r.h5").read_bytes()[:4000])
     write_result(make_result(), folder / "r.h5")
     assert open_result(folder / "r.h5").name == "synthetic"
 
@@ -168,17 +168,17 @@ def test_finished_work_is_rescued(folder, rescued):
     temporary.unlink()
     folder.rmdir()
     with pytest.raises(OutputError) as caught:
-        write_result(make_result(name="long work"), folder / "r.h5", reservation=reservation)
+        write_result(make_result(name="long-work"), folder / "r.h5", reservation=reservation)
     (saved,) = rescued.iterdir()
     assert f"the result was saved as {saved} instead" in str(caught.value)
-    assert open_result(saved).name == "long work"
+    assert open_result(saved).name == "long-work"
 
 
 def test_finished_work_is_rescued_without_a_reservation(folder, rescued):
     with pytest.raises(OutputError, match="does not exist.*the result was saved as"):
-        write_result(make_result(name="long work"), folder / "missing" / "r.h5")
+        write_result(make_result(name="long-work"), folder / "missing" / "r.h5")
     (saved,) = rescued.iterdir()
-    assert open_result(saved).name == "long work"
+    assert open_result(saved).name == "long-work"
 
 
 def test_full_disk_at_the_end(folder, rescued, monkeypatch):

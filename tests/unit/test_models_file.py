@@ -1,15 +1,28 @@
 """A file of integrated models holds what was put in, gives it back piece by piece, and destroys nothing."""
 
+import gzip
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
 
-from goniosim.errors import ForeignFileError, OutputError, UnusableResultError
-from goniosim.store import ModelsWriter, is_models_file, may_be_models_file, open_models, open_result, write_result
-from goniosim.store.models.checksums import fletcher32
+from goniosim.errors import DamagedFileError, ForeignFileError, OutputError, UnusableResultError
+from goniosim.store import (
+    ModelsWriter,
+    access,
+    is_models_file,
+    may_be_models_file,
+    open_models,
+    open_result,
+    write_result,
+)
+from goniosim.store.checksums import fletcher32
 from goniosim.store.models.layout import describe
 from synthetic import MODELS, make_result, write_models
 
+# Internal albedo of ww09 at normal incidence in the old file, as goniosim 0.1 reads it.
+OLD_ALBEDO = [0.087707513, 0.070192222, 0.045091582]
 PROVENANCE = {"created_utc": "2024-05-01T12:00:00Z", "goniosim_version": "0.1.0"}
 
 
@@ -18,13 +31,13 @@ def test_what_goes_in_comes_out(tmp_path):
     names = ("zinc", "amber")
     written = write_models(tmp_path / "models.h5", names, parametrization="half")
     with open_models(tmp_path / "models.h5") as models:
-        models.verify()
         assert models.materials == names
         assert models.provenance["subcells"] == "5" and "filetype" not in models.provenance
         for name in names:
             material = models.material(name)
             result = written[name, "ww09"]
-            assert material.config_yaml == result.config_yaml and material.config_hash == result.config_hash
+            assert material.config_yaml == make_result(name=name, parametrization="half").config_yaml
+            assert material.config_hash == result.config_hash
             assert material.main_component == "transmission" and material.channels == result.channels
             np.testing.assert_array_equal(material.theta_deg, result.theta_deg)
             np.testing.assert_array_equal(material.cells.valid, result.cells.valid)
@@ -47,8 +60,8 @@ def test_only_what_is_asked_for_is_read(tmp_path, monkeypatch):
     """A study of a gigabyte is opened and described without its slices."""
     write_models(tmp_path / "models.h5", ("a", "b"))
     read = []
-    original = h5py.Dataset.__getitem__
-    monkeypatch.setattr(h5py.Dataset, "__getitem__", lambda self, key: (read.append(self.name), original(self, key))[1])
+    original = access.read
+    monkeypatch.setattr(access, "read", lambda dataset: (read.append(dataset.name), original(dataset))[1])
     with open_models(tmp_path / "models.h5") as models:
         described = [models.material(name) for name in models.materials]
         assert not any(name.endswith("/energy") for name in read)
@@ -89,36 +102,53 @@ def test_a_material_without_models_is_no_error(tmp_path):
         assert models.material("synthetic").models == ()
 
 
-def test_what_a_user_adds_is_ignored(tmp_path):
+def test_schema_1_1_is_still_read(tmp_path):
+    """A file that goniosim 0.1 wrote; what a user adds to one is ignored without a word."""
     path = tmp_path / "models.h5"
-    write_models(path)
+    path.write_bytes(gzip.decompress((Path(__file__).parents[1] / "data" / "models-1.1.h5.gz").read_bytes()))
     with h5py.File(path, "r+") as file:
         file.attrs["note"] = "mine"
-        file["notes/temperature"] = [20.0]
-        file["synthetic/comments"] = [1.0]
-        file["synthetic/ww09/reflection/internal/weights"] = [1.0]
+        file["patina/comments"] = [1.0]
     with open_models(path) as models:
-        models.verify()
-        assert models.materials == ("synthetic",) and models.provenance["note"] == "mine"
-        assert [entry.label for entry in models.material("synthetic").models] == list(MODELS)
+        assert (models.schema_version, models.materials, models.provenance["subcells"]) == ("1.1", ("patina",), "2")
+        material = models.material("patina")
+        assert material.main_component == "reflection/internal" and material.cells.valid.shape == (2, 4, 8)
+        (entry,) = material.models
+        slices = models.slices(material, entry)
+    assert list(slices) == ["reflection/direct", "reflection/internal"]
+    assert slices["reflection/internal"].energy.sum(axis=(2, 3))[0] == pytest.approx(OLD_ALBEDO, rel=1e-6)
+
+
+def test_a_flipped_bit_in_schema_1_1_is_an_error(tmp_path):
+    """Forty places in the chunks of slices, where HDF5 has a checksum, and one in the scene, where it has none."""
+    path = tmp_path / "models.h5"
+    sound = gzip.decompress((Path(__file__).parents[1] / "data" / "models-1.1.h5.gz").read_bytes())
+    path.write_bytes(sound)
+    with h5py.File(path) as file:
+        dataset = file["patina/ww09/reflection/internal/energy"].id
+        chunks = [dataset.get_chunk_info(number) for number in range(dataset.get_num_chunks())]
+    places = [chunk.byte_offset + chunk.size * part // 7 for chunk in chunks for part in range(7)]
+    for number, place in enumerate([*places, sound.index(b"material:") + 40]):
+        copy = bytearray(sound)
+        copy[place] ^= 1 << number % 8
+        path.write_bytes(copy)
+        with pytest.raises(DamagedFileError), open_models(path) as models:
+            models.material("patina")
 
 
 def test_schema_1_0_is_still_read(tmp_path):
     """It had no lists, no digest of the scene and no main component."""
     path = tmp_path / "models.h5"
-    written = write_models(path, components=("reflection/direct", "reflection/internal"))
+    path.write_bytes(gzip.decompress((Path(__file__).parents[1] / "data" / "models-1.1.h5.gz").read_bytes()))
     with h5py.File(path, "r+") as file:
         del file.attrs["materials"], file.attrs["schema_version"]
         file.attrs["schema_version"] = np.bytes_("1.0")
         for name in ("models", "main_component", "config_yaml_sha256"):
-            del file["synthetic"].attrs[name]
+            del file["patina"].attrs[name]
     with open_models(path) as models:
-        material = models.material("synthetic")
+        material = models.material("patina")
         assert material.main_component == "reflection/internal"
-        assert {entry.label for entry in material.models} == set(MODELS)
-        (entry,) = [entry for entry in material.models if entry.model == "ww09"]
-        energy = models.slices(material, entry)["reflection/direct"].energy
-    np.testing.assert_allclose(energy, written["synthetic", "ww09"].components["reflection/direct"].energy, rtol=1e-7)
+        assert [entry.label for entry in material.models] == ["ww09"]
 
 
 def test_the_two_kinds_of_file_are_told_apart(tmp_path):

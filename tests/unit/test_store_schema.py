@@ -1,7 +1,9 @@
 """`data_schema.md`, the table in the code and a written file say the same."""
 
 import hashlib
+import json
 import re
+import zlib
 from pathlib import Path
 
 import h5py
@@ -10,7 +12,8 @@ import pytest
 import xarray as xr
 
 from goniosim.result import AUDIT_ENTRIES
-from goniosim.store import layout, userblock, write_result
+from goniosim.store import layout, seal, write_result
+from goniosim.store.kinds import RESULT
 from goniosim.store.models import layout as models_layout
 from synthetic import make_result, write_models
 
@@ -72,7 +75,7 @@ def test_the_document_lists_the_attributes_of_the_code():
 def test_the_document_names_the_version():
     assert DOCUMENT.startswith(f"# The result file, schema {layout.SCHEMA_VERSION}\n")
     assert DOCUMENT.splitlines()[-1].startswith(f"| {layout.SCHEMA_VERSION} | ")
-    assert f"{userblock.MAGIC.decode()}{layout.SCHEMA_VERSION}\n" in DOCUMENT
+    assert f"{RESULT.mark.decode()}{layout.SCHEMA_VERSION}\n" in DOCUMENT
     versions = re.findall(r"^\| (\d\.\d) \| ", MODELS, re.MULTILINE)
     assert versions[-1] == models_layout.SCHEMA_VERSION
 
@@ -147,21 +150,40 @@ def test_the_examples_run(example, path, monkeypatch, capsys):
     assert capsys.readouterr().out
 
 
-def test_the_digest_is_what_the_document_says(path):
+def test_the_digests_are_what_the_document_says(path):
     content = path.read_bytes()
-    text = content[: userblock.SIZE].decode()
-    assert f"\nsha256: {hashlib.sha256(content[512:]).hexdigest()}\n" in text
-    assert f"\nbytes: {len(content) - 512}\n" in text
+    with h5py.File(path) as file:
+        text = file["checksums/file"][()].decode()
+        manifest = file["checksums/content"][()]
+        energy = file["transmission/energy"]
+        assert energy.attrs["sha256"].decode() == hashlib.sha256(energy[()].tobytes()).hexdigest()
+    place = content.index(text.encode())
+    assert len(text) == seal.SIZE and text.encode() in path.read_bytes()[: seal.WINDOW]
+    without = content[:place] + content[place + seal.SIZE :]
+    assert f"\nsha256: {hashlib.sha256(without).hexdigest()}\n" in text
+    assert f"\ncontent-sha256: {hashlib.sha256(manifest).hexdigest()}\n" in text
+    assert f"\nbytes: {len(content)}\n" in text
+    assert text[503:] == f"{zlib.crc32(text[:503].encode()):08x}\n"
     for line in text.splitlines()[:2]:
         assert f"\n    {line}\n" in DOCUMENT
+    listed = json.loads(manifest)
+    node = ["coordinates", "theta_deg phi_deg"], ["long_name", "BSDF averaged over the cell"]
+    digest, names = listed["transmission/bsdf"]
+    with h5py.File(path) as file:
+        found = file["transmission/bsdf"]
+        values = [[name, found.attrs[name].decode()] for name in names]
+        canonical = json.dumps([*values, "<f8", list(found.shape)])
+    assert all(each in values for each in node) and hashlib.sha256(canonical.encode()).hexdigest() == digest
+    assert listed["transmission/row"] == "cells/row"
 
 
+@pytest.mark.parametrize("engine", [None, "h5netcdf"])
 @pytest.mark.parametrize("group", [*layout.COMPONENTS, "reflection/internal/order_2"])
-def test_xarray_opens_a_component(path, group):
-    """Named axes, with coordinates, and the numbers of the result."""
+def test_xarray_opens_a_component(path, group, engine):
+    """Named axes, with coordinates, and the numbers of the result; the engine need not be named."""
     component = make_result(orders=3).components[group.partition("/order")[0]]
     component = component.orders["order_2"] if "order" in group else component
-    with xr.open_dataset(path, group=group, engine="h5netcdf") as slices:
+    with xr.open_dataset(path, group=group, engine=engine) as slices:
         assert slices.bsdf.dims == ("direction", "channel", "row", "column")
         np.testing.assert_array_equal(slices.bsdf.values, component.bsdf)
         np.testing.assert_array_equal(slices.stderr.values, component.stderr)
@@ -175,9 +197,10 @@ def test_xarray_opens_a_component(path, group):
         assert slices.attrs["contains_delta"] == component.contains_delta
 
 
-def test_xarray_opens_the_rest(path):
+@pytest.mark.parametrize("engine", [None, "h5netcdf"])
+def test_xarray_opens_the_rest(path, engine):
     result = make_result(orders=3)
-    with xr.open_datatree(path, engine="h5netcdf") as tree:
+    with xr.open_datatree(path, engine=engine) as tree:
         assert tree["cells/valid"].dtype == bool
         assert tree["cells/valid"].dims == ("direction", "row", "column")
         assert tree["audit/absorbed_base"].dims == ("direction", "channel")
@@ -196,6 +219,9 @@ def test_every_piece_of_a_models_file_is_described_and_the_reverse(tmp_path):
     datasets, attributes = set(), set()
     with h5py.File(tmp_path / "models.h5") as file:
         for path, node in [("", file), *walk(file)]:
+            if path.startswith("checksums"):
+                datasets |= {path} if isinstance(node, h5py.Dataset) else set()
+                continue
             below = path.removeprefix(material).removeprefix("/")
             if below.startswith("ww09"):
                 continue

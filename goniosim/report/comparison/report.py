@@ -1,14 +1,11 @@
 """The folder that a comparison writes: tables, integrated slices, figures; one material at a time."""
 
-import re
-
 from ...compare.comparison import check_usable
 from ...compare.material import compare_material
 from ...compare.summary import summarise
 from ...cores import available_cores
 from ...errors import UnusableResultError
 from ...integration import Pool
-from ...scene.model import FileName
 from ...store import ModelsWriter, open_result, read_header
 from ..drawing.files import write_figure
 from ..drawing.names import distinct
@@ -35,7 +32,7 @@ def check_headers(paths, allow_partial):
     Raises
     ------
     UnusableResultError
-        A partial result, one whose name is none for a file, or two of the same name.
+        A partial result, or two of the same name.
     ForeignFileError, DamagedFileError, NewerSchemaError
         A file is not a result that can be read.
     """
@@ -47,8 +44,6 @@ def check_headers(paths, allow_partial):
                 f"{path}: the simulation was interrupted (partial); finish it, or use --allow-partial"
             )
         name = header["name"]
-        if not re.fullmatch(FileName.pattern, name):
-            raise UnusableResultError(f"{path}: no file can have the name of its material; simulate it under another")
         if name in names:
             raise UnusableResultError(
                 f"{path}: its material has the name {name}, as that of {names[name]}; "

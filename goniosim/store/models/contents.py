@@ -1,19 +1,30 @@
 """What a file of integrated models tells without its slices: its materials, and the models of each.
 
-Whatever is not as described raises a ValueError or a LookupError, see `goniosim.store.decoding`.
+Whatever is not as described raises a ValueError.
 """
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import h5py
 import numpy as np
 
-from goniosim.result import Cells
-from goniosim.store.decoding import cells, find, find_shaped, text, values
-from goniosim.store.layout import SCALES
+from goniosim.result import Cells, Component
+from goniosim.store import access, validation
+from goniosim.store.decoding import cells, shaped, values
+from goniosim.store.manifest import Manifest, NoManifest
 from goniosim.store.models.layout import COMPONENTS, SHARED, VALUES, describe
+
+
+@dataclass(frozen=True)
+class Source:
+    """An open file, what in it is ours, and the version of its schema."""
+
+    file: h5py.File
+    ours: Manifest | NoManifest
+    version: str
 
 
 @dataclass(frozen=True)
@@ -66,34 +77,54 @@ class MaterialEntry:
     models: tuple[ModelEntry, ...]
 
 
-def read_material(group: h5py.Group, name: str, version: str) -> MaterialEntry:
+ENTRY = (
+    validation.Rule(
+        "the name of a material", "be usable as a file name", lambda entry: validation.is_file_name(entry.name)
+    ),
+    validation.Rule("config_hash", "be 64 hexadecimal digits", lambda entry: validation.is_hash(entry.config_hash)),
+    validation.Rule(
+        "a model",
+        "be called NAME or NAME[OPTIONS], in plain letters",
+        lambda entry: all(map(_is_well_named, entry.models)),
+    ),
+    validation.Rule(
+        "main_component",
+        "be one of every model",
+        lambda entry: all(any(map(_is_within(entry.main_component), model.components)) for model in entry.models),
+    ),
+)
+
+
+def read_material(source: Source, name: str) -> MaterialEntry:
     """Read what describes a material, and make sure that the slices of its models are there.
 
     Parameters
     ----------
-    group : h5py.Group
+    source : Source
     name : str
         By which the file lists it.
-    version : str
-        Of the schema.
 
     Returns
     -------
     MaterialEntry
     """
-    config_yaml = text(group, "config_yaml")
-    if text(group, "name") != name:
-        raise ValueError(f"the material {name} calls itself {text(group, 'name')}")
-    if version != "1.0" and hashlib.sha256(config_yaml.encode()).hexdigest() != text(group, "config_yaml_sha256"):
+    group = access.group(source.file, name)
+    config_yaml = access.text(group, "config_yaml")
+    if access.text(group, "name") != name:
+        raise ValueError(f"the material {name} calls itself {access.text(group, 'name')!r}")
+    if source.version == "1.1" and hashlib.sha256(config_yaml.encode()).hexdigest() != access.text(
+        group, "config_yaml_sha256"
+    ):
         raise ValueError(f"the scene of {name} does not match its digest")
-    sizes = {dim: len(find(group, scale)) for dim, scale in SCALES.items() if dim != "rays"}
-    shared = {entry.path: values(find_shaped(group, entry.path, entry, sizes), entry) for entry in SHARED}
-    models = tuple(_model(group[label], label, sizes) for label in listed(group, "models", version))
-    return MaterialEntry(
+    scene = validation.scene_of(config_yaml)
+    sizes = validation.sizes_of(scene)
+    shared = {entry.path: values(shaped(group, entry.path, entry, sizes), entry) for entry in SHARED}
+    models = tuple(_model(source, f"{name}/{label}", label, sizes) for label in listed(source, name, "models"))
+    material = MaterialEntry(
         name=name,
         config_yaml=config_yaml,
-        config_hash=text(group, "config_hash"),
-        main_component=_main_component(group, models, version),
+        config_hash=access.text(group, "config_hash"),
+        main_component=_main_component(group, models, source.version),
         theta_deg=shared["incident/theta_deg"],
         phi_deg=shared["incident/phi_deg"],
         rays=shared["incident/rays"],
@@ -101,43 +132,71 @@ def read_material(group: h5py.Group, name: str, version: str) -> MaterialEntry:
         cells=cells(group, shared.__getitem__),
         models=models,
     )
+    validation.check(ENTRY, material)
+    validation.check(validation.GEOMETRY, material, scene)
+    return material
 
 
-def listed(group: h5py.Group, name: str, version: str) -> tuple[str, ...]:
+def read_slices(source: Source, material: MaterialEntry, model: ModelEntry, component: str) -> dict[str, Component]:
+    """Read the slices of a model, of the components whose names begin with ``component``."""
+    group = access.group(source.file, f"{material.name}/{model.label}")
+    directions, rows, columns = material.cells.valid.shape
+    sizes = {"direction": directions, "channel": len(material.channels), "row": rows, "column": columns}
+
+    def read(path: str) -> Any:
+        entry = describe(path)
+        return values(shaped(group, path, entry, sizes), entry)
+
+    return {
+        name: Component(**{each: read(f"{name}/{each}") for each in VALUES} | {"contains_delta": contains_delta})
+        for name, contains_delta in model.components.items()
+        if name.startswith(component)
+    }
+
+
+def listed(source: Source, path: str, name: str) -> tuple[str, ...]:
     """Names that an attribute lists, each of a group that is there."""
-    if version == "1.0":
+    if source.version == "1.0":
         # It had no lists, and nothing beside what was compared.
-        return tuple(
-            key
-            for key, node in group.items()
-            if isinstance(node, h5py.Group) and ("config_hash" in node.attrs or "model" in node.attrs)
-        )
-    names = tuple(text(group, name).splitlines())
+        key = "model" if path else "config_hash"
+        group = access.group(source.file, path)
+        return tuple(each for each in group if access.has_attribute(access.node(group, each), key))
+    names = tuple(access.text(access.group(source.file, path), name).splitlines())
     for each in names:
-        if "/" in each or not isinstance(group.get(each), h5py.Group):
-            raise ValueError(f"the group {each} of {group.name} is missing")
+        if "/" in each or not each:
+            raise ValueError(f"{name} lists {each!r}, which is no name of a group")
+        access.group(source.file, f"{path}/{each}".lstrip("/"))
     return names
 
 
-def _model(group: h5py.Group, label: str, sizes: Mapping[str, int]) -> ModelEntry:
+def _model(source: Source, path: str, label: str, sizes: Mapping[str, int]) -> ModelEntry:
+    group = access.group(source.file, path)
     found = {}
     for component in COMPONENTS:
-        if f"{component}/{VALUES[0]}" in group:
+        if source.ours.has(f"{path}/{component}/{VALUES[0]}"):
             for name in VALUES:
-                path = f"{component}/{name}"
-                find_shaped(group, path, describe(path), sizes)
-            found[component] = bool(group[component].attrs["contains_delta"])
+                shaped(group, f"{component}/{name}", describe(f"{component}/{name}"), sizes)
+            found[component] = access.flag(access.group(group, component), "contains_delta")
     if not found:
-        raise ValueError(f"the model {group.name} has no component")
-    return ModelEntry(label, text(group, "model"), text(group, "options"), found)
+        raise ValueError(f"the model {path} has no component")
+    return ModelEntry(label, access.text(group, "model"), access.text(group, "options"), found)
 
 
 def _main_component(group: h5py.Group, models: Sequence[ModelEntry], version: str) -> str:
     if version == "1.0":
         present = {name for model in models for name in model.components}
         return next((name for name in ("transmission", *COMPONENTS[1:]) if name in present), "")
-    main = text(group, "main_component")
-    for model in models:
-        if not any(name.startswith(main) for name in model.components):
-            raise ValueError(f"the model {model.label} lacks the main component {main}")
+    main = access.text(group, "main_component")
+    if main not in COMPONENTS:
+        raise ValueError(f"main_component is {main!r}")
     return main
+
+
+def _is_within(main: str) -> Callable[[str], bool]:
+    return lambda name: name.startswith(main)
+
+
+def _is_well_named(model: ModelEntry) -> bool:
+    options = f"[{model.options}]" if model.options else ""
+    plain = validation.is_name(model.model) and validation.is_options(model.options)
+    return plain and model.label == f"{model.model}{options}"

@@ -7,10 +7,11 @@ A test holds `data_schema.md` against this table.
 from dataclasses import replace
 
 from goniosim.store import layout
-from goniosim.store.layout import Attribute, Dataset
+from goniosim.store.kinds import MODELS
+from goniosim.store.layout import CHECKSUMS, Attribute, Dataset
 
-FILETYPE = "goniosim-models"
-SCHEMA_VERSION = "1.1"
+FILETYPE = MODELS.filetype
+SCHEMA_VERSION = MODELS.schema_version
 # `reflection`: all that is reflected, where a model does not tell direct from internal paths.
 COMPONENTS = (*layout.COMPONENTS, "reflection")
 VALUES = ("energy", "stderr", "bsdf", "bsdf_stderr")
@@ -22,10 +23,13 @@ SHARED = tuple(
     dataset for dataset in layout.DATASETS if dataset.path in COORDINATES or dataset.path.split("/")[0] in FOLDERS
 )
 _OF_A_MODEL = tuple(layout.describe(f"{layout.COMPONENTS[0]}/{name}") for name in VALUES)
-DATASETS = tuple(
-    replace(dataset, path=f"{group}/{dataset.path}")
-    for group, datasets in (("MATERIAL", SHARED), ("MATERIAL/MODEL", _OF_A_MODEL))
-    for dataset in datasets
+DATASETS = (
+    *(
+        replace(dataset, path=f"{group}/{dataset.path}")
+        for group, datasets in (("MATERIAL", SHARED), ("MATERIAL/MODEL", _OF_A_MODEL))
+        for dataset in datasets
+    ),
+    *CHECKSUMS,
 )
 
 ATTRIBUTES = (
@@ -39,7 +43,6 @@ ATTRIBUTES = (
     ),
     Attribute("MATERIAL", "name", "text", "name of the material"),
     Attribute("MATERIAL", "config_yaml", "text", "the scene of the result that was compared"),
-    Attribute("MATERIAL", "config_yaml_sha256", "text", "SHA-256 of config_yaml, hexadecimal"),
     Attribute("MATERIAL", "config_hash", "text", "identity of the scene of that result"),
     Attribute("MATERIAL", "main_component", "text", "the component by which the models were ranked"),
     Attribute("MATERIAL", "models", "text", "names of the groups MODEL, one in a line, in the order of comparison"),

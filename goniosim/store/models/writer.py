@@ -11,9 +11,11 @@ import numpy as np
 
 from goniosim.errors import OutputError
 from goniosim.result import Component, Result
-from goniosim.store.encoding import FORMAT, utf8, write_dataset, write_text
+from goniosim.store import seal
+from goniosim.store.encoding import FORMAT, reserve_seal, write_dataset, write_manifest, write_text
+from goniosim.store.kinds import MODELS
 from goniosim.store.models.layout import COORDINATES, FILETYPE, FOLDERS, SCHEMA_VERSION, SHARED, VALUES, describe
-from goniosim.store.models.reader import is_models_file
+from goniosim.store.opening import kind_of
 from goniosim.store.writer import arrays
 from goniosim.writing import Replacement, StrPath, explained
 
@@ -48,6 +50,7 @@ class ModelsWriter:
             with self._explained():
                 # The lock on the file in the making is ours already.
                 self._file = h5py.File(self._replacement.temporary, "w", libver=FORMAT, locking=False)
+                self._place = reserve_seal(self._file)
                 for name, text in {"filetype": FILETYPE, "schema_version": SCHEMA_VERSION, **provenance}.items():
                     write_text(self._file, name, text)
         except BaseException:
@@ -60,8 +63,14 @@ class ModelsWriter:
             write_text(self._file, "materials", "\n".join(self._materials))
             for name, labels in self._materials.items():
                 write_text(self._file[name], "models", "\n".join(labels))
+            content_digest = write_manifest(self._file)
             self._file.close()
-            with open(self._replacement.temporary, "rb") as stream:
+            with open(self._replacement.temporary, "r+b") as stream:
+                digest = seal.digest(stream, self._place)
+                length = stream.tell()
+                stream.seek(self._place)
+                stream.write(seal.make(MODELS, length, digest, content_digest))
+                stream.flush()
                 os.fsync(stream.fileno())
         self._replacement.commit()
 
@@ -86,8 +95,6 @@ class ModelsWriter:
             group = self._file.create_group(result.name)
             for name in ("name", "config_yaml", "config_hash"):
                 write_text(group, name, getattr(result, name))
-            # HDF5 keeps long texts without a checksum.
-            write_text(group, "config_yaml_sha256", hashlib.sha256(utf8(result.config_yaml)).hexdigest())
             write_text(group, "main_component", main_component)
             for path, values in arrays(result):
                 if path in _SHARED_PATHS:
@@ -143,7 +150,7 @@ class ModelsWriter:
 
 
 def _refuse_to_destroy(path: StrPath) -> None:
-    if Path(path).exists() and not is_models_file(path):
+    if Path(path).exists() and kind_of(path)[0] is not MODELS:
         raise OutputError(
             f"{path}: exists and is not a file of integrated models, so it is not overwritten; "
             "write the report into another folder"

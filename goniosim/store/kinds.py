@@ -1,0 +1,53 @@
+"""The two kinds of file that goniosim writes, and how each of them calls itself."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of file.
+
+    Attributes
+    ----------
+    name : str
+        In the first line of the seal.
+    filetype : str
+        The attribute of the root.
+    schema_version : str
+        MAJOR.MINOR, of the files that are written.
+    what : str
+        What such a file is, and which command wrote it.
+    remedy : str
+        What the user can do if one is damaged.
+    """
+
+    name: str
+    filetype: str
+    schema_version: str
+    what: str
+    writer: str
+    remedy: str
+
+    @property
+    def mark(self) -> bytes:
+        """How the seal begins, in every version of the schema."""
+        return f"goniosim {self.name}, schema ".encode()
+
+
+RESULT = Kind(
+    name="result",
+    filetype="goniosim-result",
+    schema_version="1.1",
+    what="a goniosim result",
+    writer="name a file that `goniosim simulate` wrote",
+    remedy="restore it from a copy or simulate again",
+)
+MODELS = Kind(
+    name="models",
+    filetype="goniosim-models",
+    schema_version="1.2",
+    what="a file of integrated models",
+    writer="name a models.h5 that `goniosim compare` wrote",
+    remedy="restore it from a copy or compare again",
+)
+KINDS = (RESULT, MODELS)

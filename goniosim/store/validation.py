@@ -1,0 +1,198 @@
+"""What a file must say for the rest of goniosim to rely on it, as rules: a stranger can write anything.
+
+The types and ranges of single datasets stand in `goniosim.store.layout`; here is what ties them together.
+"""
+
+import functools
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from goniosim.errors import ConfigError
+from goniosim.scene import CHANNELS, Scene, optical_stack, parse_scene
+from goniosim.scene.model import FileName
+
+# Each checkpoint comes after twice the work of the one before; a merged run may have more of them.
+MAX_CHECKPOINTS = 100_000
+_SUM = 1e-6
+_ANGLE = 1e-9
+
+Header = Mapping[str, str | int]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Something that must hold.
+
+    Attributes
+    ----------
+    field : str
+        Of the file.
+    must : str
+        How the sentence goes on: "be ...".
+    holds : callable
+        What is given to `check` is given to it.
+    """
+
+    field: str
+    must: str
+    holds: Callable[..., bool]
+
+
+def check(rules: Sequence[Rule], *subjects: Any) -> None:
+    """Raise a ValueError that names the first rule that does not hold."""
+    for rule in rules:
+        if not rule.holds(*subjects):
+            raise ValueError(f"{rule.field} must {rule.must}")
+
+
+def _word(pattern: str, low: int, high: int) -> Callable[[object], bool]:
+    found = re.compile(f"{pattern}{{{low},{high}}}", re.ASCII)
+    return lambda value: isinstance(value, str) and found.fullmatch(value) is not None
+
+
+is_name = _word(r"[a-zA-Z0-9_]", 1, 80)
+is_hash = _word(r"[0-9a-f]", 64, 64)
+is_options = _word(r"[a-zA-Z0-9_=,.+ -]", 0, 400)
+
+
+def is_file_name(value: object) -> bool:
+    """Whether a name is one that a material may have: no path, no control character."""
+    return isinstance(value, str) and re.fullmatch(FileName.pattern, value) is not None
+
+
+def _are_texts(header: Header, *names: str) -> bool:
+    return all(isinstance(header.get(name), str) for name in names)
+
+
+HEADER = (
+    Rule("name", FileName.rule.removeprefix("must "), lambda header: is_file_name(header.get("name"))),
+    Rule("status", "be complete or partial", lambda header: header.get("status") in ("complete", "partial")),
+    Rule("seed", "be a whole number", lambda header: isinstance(header.get("seed"), int)),
+    Rule("config_hash", "be 64 hexadecimal digits", lambda header: is_hash(header.get("config_hash"))),
+    Rule(
+        "config_yaml, created_utc and goniosim_version",
+        "be texts",
+        lambda header: _are_texts(header, "config_yaml", "created_utc", "goniosim_version"),
+    ),
+    Rule("an attribute of the root", "have a plain name", lambda header: all(map(is_name, header))),
+)
+
+HEADER_AND_SCENE = (
+    Rule("name", "be that in config_yaml", lambda header, scene: header["name"] == scene.material.name),
+    Rule("seed", "be that in config_yaml", lambda header, scene: header["seed"] == scene.simulation.seed),
+)
+
+# For whatever has directions, channels and cells: a result, or a material of a file of models.
+GEOMETRY = (
+    Rule(
+        "incident/theta_deg",
+        "be the angles in config_yaml",
+        lambda it, scene: it.theta_deg.tolist() == list(scene.incident.theta_deg),
+    ),
+    Rule(
+        "channels/name",
+        "be different names of up to 40 printable characters",
+        lambda it, scene: len(set(it.channels)) == len(it.channels) and all(map(_is_label, it.channels)),
+    ),
+    Rule("cells/row_edges", "go from 0 to 90 in equal steps", lambda it, scene: _is_even(it.cells.row_edges, 90.0)),
+    Rule(
+        "cells/column_edges",
+        "go from 0 to 360 in equal steps",
+        lambda it, scene: _is_even(it.cells.column_edges, 360.0),
+    ),
+    Rule(
+        "cells/parametrization",
+        "be that in config_yaml",
+        lambda it, scene: it.cells.parametrization == scene.slice.parametrization,
+    ),
+    Rule(
+        "cells/projected_solid_angle",
+        "sum to pi in each direction",
+        lambda it, scene: np.allclose(it.cells.projected_solid_angle.sum(axis=(1, 2)), np.pi, rtol=_SUM, atol=0.0),
+    ),
+)
+
+RESULT = (
+    Rule(
+        "incident/rays",
+        "be those in config_yaml, or fewer if status is partial",
+        lambda result, scene: (
+            (result.rays <= scene.simulation.rays).all()
+            and (result.status == "partial" or (result.rays == scene.simulation.rays).all())
+        ),
+    ),
+    Rule(
+        "reflection and transmission",
+        "be there as the scene calls for them",
+        lambda result, scene: components_of(scene) <= result.components.keys(),
+    ),
+    Rule(
+        "COMPONENT/hits",
+        "be there for sampled components, and only for them",
+        lambda result, scene: all(
+            (component.hits is None) == (name == "reflection/direct") for name, component in result.components.items()
+        ),
+    ),
+    Rule("audit", "sum to 1 wherever rays were traced", lambda result, scene: _is_balanced(result)),
+    Rule(
+        "cost",
+        "not decrease from one checkpoint to the next",
+        lambda result, scene: all(
+            (np.diff(each) >= 0.0).all() for each in (result.cost.rays, result.cost.seconds, result.cost.cpu_seconds)
+        ),
+    ),
+    Rule(
+        "cost/error_SAMPLED",
+        "be there for each sampled component",
+        lambda result, scene: result.components.keys() - {"reflection/direct"} <= result.cost.error.keys(),
+    ),
+    Rule("effects", "have plain names", lambda result, scene: all(map(is_name, result.effects))),
+)
+
+
+@functools.lru_cache(maxsize=8)
+def scene_of(config_yaml: str) -> Scene:
+    """The scene in a file; a ValueError with its first mistake if there is none."""
+    try:
+        return parse_scene(config_yaml, "config_yaml")
+    except ConfigError as error:
+        raise ValueError(error.problems[0]) from None
+
+
+def sizes_of(scene: Scene) -> dict[str, int]:
+    """Lengths of the dimensions that a scene determines."""
+    rows, columns = scene.slice.rows, scene.slice.columns
+    return {
+        "direction": len(scene.incident.theta_deg),
+        "channel": len(CHANNELS),
+        "row": rows,
+        "column": columns,
+        "row_edges": rows + 1,
+        "column_edges": columns + 1,
+    }
+
+
+def components_of(scene: Scene) -> set[str]:
+    """The components that a scene calls for at least."""
+    found = {"reflection/direct"}
+    if len(optical_stack(scene.material).material.interfaces) > 1:
+        found.add("reflection/internal")
+    if scene.material.transmits:
+        found.add("transmission")
+    return found
+
+
+def _is_label(text: str) -> bool:
+    return 0 < len(text) <= 40 and text.isprintable()
+
+
+def _is_even(edges: np.ndarray, end: float) -> bool:
+    return np.allclose(edges, np.linspace(0.0, end, len(edges)), rtol=0.0, atol=_ANGLE)
+
+
+def _is_balanced(result: Any) -> bool:
+    return bool((np.abs(result.audit.residual[result.rays > 0]) <= _SUM).all())
