@@ -129,7 +129,7 @@ def test_the_header_alone_is_right_or_refused(path, sound):
 def test_a_long_text_lies_outside_the_checksums_of_hdf5(path):
     long = make_result()
     long.provenance["command"] = "a long command " * 5000
-    write_result(long, path)
+    write_result(long, path, overwrite=True)
     content = path.read_bytes()
     damaged = flipped(content, content.index(b"a long command") + 4, 0)
     for reader in (open_result, read_header):

@@ -17,7 +17,7 @@ from . import files
 FIGURES, MODELS = "figures", "models.h5"
 TABLES = (MODELS, files.CSV, files.JSON)
 _FIGURE = re.compile(rf"{FIGURES}/[^./][^/]*\.(?:png|svg)")
-_OTHER_PLACE = "write the report into another folder"
+_OTHER_PLACE = "write the report into another folder with -o"
 
 
 class ReportFolder:
@@ -45,7 +45,9 @@ class ReportFolder:
     def __init__(self, folder, materials):
         self._shown = folder
         self._folder = Path(os.path.realpath(folder))
-        if self._folder.exists() and not self._folder.is_dir():
+        with explained(folder):
+            in_the_way = self._folder.exists() and not self._folder.is_dir()
+        if in_the_way:
             raise OutputError(f"{folder}: is not a folder; {_OTHER_PLACE}")
         remove_dead([self._folder])
         if self._folder.is_dir():
