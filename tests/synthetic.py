@@ -11,7 +11,7 @@ material:
 {layers}\
 incident: {{theta_deg: {theta_deg}}}
 slice: {{parametrization: {parametrization}, rows: {rows}, columns: {columns}}}
-simulation: {{rays: {rays}, seed: {seed}}}
+simulation: {{rays: {rays}, seed: {seed}{orders}}}
 """
 COATED = """\
     - interface: {type: dielectric, eta: 1.5, alpha: 0.2}
@@ -76,6 +76,7 @@ def make_result(
         columns=columns,
         rays=rays,
         seed=seed,
+        orders=f", orders: {orders}" if orders else "",
     )
     return Result(
         config_yaml=scene if config_yaml is None else config_yaml,
@@ -153,7 +154,8 @@ def _component(path, rng, cells, channels, rays, orders):
     sampled = path != "reflection/direct"
     parts = {}
     if sampled and orders:
-        names = [*(f"order_{number}" for number in range(2, orders + 1)), f"order_{orders + 1}_and_more"]
+        lowest = 1 if path == "transmission" else 2
+        names = [*(f"order_{number}" for number in range(lowest, orders + 1)), f"order_{orders + 1}_and_more"]
         parts = {name: _component(path, rng, cells, channels, rays, 0) for name in names}
     to_bsdf = np.where(cells.valid, 1 / cells.projected_solid_angle, 0.0)[:, None]
     return Component(

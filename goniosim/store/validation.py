@@ -131,6 +131,13 @@ RESULT = (
         lambda result, scene: components_of(scene) <= result.components.keys(),
     ),
     Rule(
+        "COMPONENT/order_N",
+        "be there for sampled components as simulation.orders in config_yaml asks for",
+        lambda result, scene: all(
+            set(component.orders) == _orders_of(name, scene) for name, component in result.components.items()
+        ),
+    ),
+    Rule(
         "COMPONENT/hits",
         "be there for sampled components, and only for them",
         lambda result, scene: all(
@@ -184,6 +191,15 @@ def components_of(scene: Scene) -> set[str]:
     if scene.material.transmits:
         found.add("transmission")
     return found
+
+
+def _orders_of(component: str, scene: Scene) -> set[str]:
+    """Names of the orders of a component: light that passes meets the top interface at least once, other light twice."""
+    highest = scene.simulation.orders
+    if highest is None or component == "reflection/direct":
+        return set()
+    lowest = 1 if component == "transmission" else 2
+    return {*(f"order_{number}" for number in range(lowest, highest + 1)), f"order_{highest + 1}_and_more"}
 
 
 def _is_label(text: str) -> bool:

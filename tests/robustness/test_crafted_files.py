@@ -138,6 +138,7 @@ CASES = {
         scene("{type: lambert, rho: 0.5}", "{type: dielectric, eta: 1.3, alpha: 0.1}"),
         "must be there",
     ),
+    "scene-orders": (scene("seed: 1", "seed: 1, orders: 2"), "order_N must be there for sampled components"),
     "parametrization": (text("cells", "parametrization", "banana"), "cells/parametrization must be that"),
     "theta-100": (values("incident/theta_deg", lambda v: v + 100), "incident/theta_deg must be from 0 to below 90"),
     "theta-90": (values("incident/theta_deg", lambda v: v + 30), "incident/theta_deg must be from 0 to below 90"),
