@@ -186,6 +186,33 @@ def _earlier(
     return NoManifest(file)
 
 
+@contextlib.contextmanager
+def written_by(version: str, path: StrPath, kind: Kind) -> Iterator[None]:
+    """While active, what cannot be understood in a sound file of a newer minor schema is called newer, not damaged.
+
+    Parameters
+    ----------
+    version : str
+        Schema of the file, MAJOR.MINOR.
+    path : path-like
+    kind : Kind
+
+    Raises
+    ------
+    NewerSchemaError
+    """
+    try:
+        yield
+    except ValueError as error:
+        if _number(version) > _number(kind.schema_version):
+            raise _newer(version, path, kind) from error
+        raise
+
+
+def _number(version: str) -> tuple[int, ...]:
+    return tuple(map(int, version.split(".")))
+
+
 def kind_of(path: StrPath) -> tuple[Kind | None, bool]:
     """Which kind a file is, sound or not, by its start alone.
 

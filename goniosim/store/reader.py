@@ -12,7 +12,7 @@ from goniosim.store.decoding import cells, shaped, values
 from goniosim.store.kinds import RESULT
 from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, describe
 from goniosim.store.manifest import Manifest, NoManifest
-from goniosim.store.opening import decoding, opened
+from goniosim.store.opening import decoding, opened, written_by
 from goniosim.writing import StrPath
 
 Ours = Manifest | NoManifest
@@ -50,7 +50,9 @@ def open_result(path: StrPath) -> Result:
     'complete'
     """
     with opened(path, RESULT) as (file, ours), decoding(path, RESULT.remedy):
-        return _result(file, ours)
+        header = _header(file, ours)
+        with written_by(str(header["schema_version"]), path, RESULT):
+            return _result(file, ours, header)
 
 
 def read_header(path: StrPath) -> dict[str, str | int]:
@@ -83,8 +85,7 @@ def _header(file: h5py.File, ours: Ours) -> dict[str, str | int]:
     return header
 
 
-def _result(file: h5py.File, ours: Ours) -> Result:
-    header: dict[str, Any] = _header(file, ours)
+def _result(file: h5py.File, ours: Ours, header: dict[str, Any]) -> Result:
     scene = validation.scene_of(header["config_yaml"])
     validation.check(validation.HEADER_AND_SCENE, header, scene)
     checkpoints = access.dataset(file, "cost/rays").size or 0

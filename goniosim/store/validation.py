@@ -59,6 +59,11 @@ is_hash = _word(r"[0-9a-f]", 64, 64)
 is_options = _word(r"[a-zA-Z0-9_=,.+ -]", 0, 400)
 
 
+def is_version(value: object) -> bool:
+    """Whether a value is a version of a schema."""
+    return isinstance(value, str) and re.fullmatch(r"\d{1,6}\.\d{1,6}", value, re.ASCII) is not None
+
+
 def is_file_name(value: object) -> bool:
     """Whether a name is one that a material may have: no path, no control character."""
     return isinstance(value, str) and re.fullmatch(FileName.pattern, value) is not None
@@ -73,6 +78,7 @@ HEADER = (
     Rule("status", "be complete or partial", lambda header: header.get("status") in ("complete", "partial")),
     Rule("seed", "be a whole number", lambda header: isinstance(header.get("seed"), int)),
     Rule("config_hash", "be 64 hexadecimal digits", lambda header: is_hash(header.get("config_hash"))),
+    Rule("schema_version", "be MAJOR.MINOR", lambda header: is_version(header.get("schema_version"))),
     Rule(
         "config_yaml, created_utc and goniosim_version",
         "be texts",
@@ -194,7 +200,7 @@ def components_of(scene: Scene) -> set[str]:
 
 
 def _orders_of(component: str, scene: Scene) -> set[str]:
-    """Names of the orders of a component: light that passes meets the top interface at least once, other light twice."""
+    """Names of the orders of a component: light that passes meets the top interface once or more, other light twice."""
     highest = scene.simulation.orders
     if highest is None or component == "reflection/direct":
         return set()

@@ -126,6 +126,7 @@ CASES = {
     "seed-other": (number("/", "seed", np.uint64(5)), "seed must be that in config_yaml"),
     "seed-huge": (number("/", "seed", np.uint64(2**64 - 1)), "seed must be that in config_yaml"),
     "hash": (text("/", "config_hash", "../x"), "config_hash must be 64 hexadecimal digits"),
+    "version": (text("/", "schema_version", "one"), "schema_version must be MAJOR.MINOR"),
     "time": (number("/", "created_utc", np.int64(3)), "created_utc and goniosim_version must be texts"),
     "scene-broken": (text("/", "config_yaml", "material: [\x1b[2J"), "config_yaml"),
     "scene-empty": (text("/", "config_yaml", ""), "config_yaml:1: the file is empty"),

@@ -300,6 +300,18 @@ def test_newer_minor_version(path):
     assert read_header(path)["temperature"] == 20
 
 
+@pytest.mark.parametrize(("version", "error"), [("1.1", DamagedFileError), ("1.7", NewerSchemaError)])
+def test_a_scene_that_only_a_newer_goniosim_knows_is_no_damage(path, version, error):
+    def edit(file):
+        file.attrs["schema_version"] = np.bytes_(version)
+        scene = file.attrs["config_yaml"] + b"polarisation: true\n"
+        file.attrs.create("config_yaml", scene, dtype=f"S{len(scene)}")
+
+    craft(path, edit, version=version)
+    message = refused(path, path.read_bytes(), error)
+    assert ("update goniosim" in message) == (version == "1.7")
+
+
 def test_schema_1_0_is_still_read(tmp_path):
     """A file that goniosim 0.1 wrote; its numbers are as they were."""
     path = tmp_path / "old.h5"

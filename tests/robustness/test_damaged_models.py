@@ -151,6 +151,17 @@ def test_newer_minor_version(path):
         assert models.schema_version == "1.9" and len(models.material("synthetic").models) == 2
 
 
+def test_a_scene_that_only_a_newer_goniosim_knows_is_no_damage(path):
+    def edit(file):
+        file.attrs["schema_version"] = np.bytes_("1.9")
+        scene = file["synthetic"].attrs["config_yaml"] + b"polarisation: true\n"
+        file["synthetic"].attrs.create("config_yaml", scene, dtype=f"S{len(scene)}")
+
+    craft(path, edit, version="1.9")
+    with open_models(path) as models, pytest.raises(NewerSchemaError, match="update goniosim"):
+        models.material("synthetic")
+
+
 def set_attribute(where, name, value):
     return lambda file: file[where].attrs.__setitem__(name, value)
 

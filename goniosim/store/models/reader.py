@@ -11,7 +11,7 @@ from goniosim.store.kinds import MODELS
 from goniosim.store.manifest import Manifest, NoManifest
 from goniosim.store.models.contents import MaterialEntry, ModelEntry, Source, listed, read_material, read_slices
 from goniosim.store.models.layout import NOT_PROVENANCE
-from goniosim.store.opening import decoding, kind_of, opened
+from goniosim.store.opening import decoding, kind_of, opened, written_by
 from goniosim.writing import StrPath
 
 
@@ -52,7 +52,10 @@ class ModelsFile:
         ------
         DamagedFileError
         """
-        with decoding(self._path, MODELS.remedy):
+        with (
+            decoding(self._path, MODELS.remedy),
+            written_by(self.schema_version, self._path, MODELS),
+        ):
             return read_material(self._source, name)
 
     def slices(self, material: MaterialEntry, model: ModelEntry, component: str = "") -> dict[str, Component]:
@@ -74,7 +77,10 @@ class ModelsFile:
         DamagedFileError
             Also when a number is out of range.
         """
-        with decoding(self._path, MODELS.remedy):
+        with (
+            decoding(self._path, MODELS.remedy),
+            written_by(self.schema_version, self._path, MODELS),
+        ):
             return read_slices(self._source, material, model, component)
 
 
