@@ -9,6 +9,9 @@ LINTERS := $(VENV)/.linters
 RAYS ?= 5e7
 PAPER := out/paper
 
+# Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.
+WORKERS := -n auto --maxprocesses 4 --dist loadfile
+
 .PHONY: demo install lint test test-all bench paper paper-report clean
 
 demo: $(STAMP)
@@ -32,10 +35,10 @@ $(LINTERS): $(STAMP)
 	touch $@
 
 test: $(STAMP)
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest $(WORKERS) -m "not slow"
 
 test-all: $(STAMP)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(WORKERS)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py
