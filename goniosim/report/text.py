@@ -9,6 +9,8 @@ from ..writing import printable
 
 # Characters of a value from a file.
 LONGEST_VALUE = 200
+# Decimals of a number with its error.
+MOST_DECIMALS = 9
 
 
 def with_error(value, stderr, decimals=5):
@@ -26,7 +28,8 @@ def with_error(value, stderr, decimals=5):
     -------
     str
         The error has one significant digit, two when the first of them is a 1 (one digit
-        alone would there be wrong by up to a half). A plain number when there is no error.
+        alone would there be wrong by up to a half). A plain number when there is no error; of
+        tiny ones the power of ten is written apart.
     """
     if stderr == 0.0 or (stderr < 10.0 ** -(decimals + 3) and stderr < 1e-6 * abs(value)):
         small = 0.0 < abs(value) < 10.0 ** (3 - decimals)
@@ -35,6 +38,10 @@ def with_error(value, stderr, decimals=5):
     if stderr / 10.0**exponent < 1.95:
         exponent -= 1
     shown = max(-exponent, 0)
+    if shown > MOST_DECIMALS:
+        power = math.floor(math.log10(max(abs(value), stderr)))
+        scale, shown = 10.0**-power, power - exponent
+        return f"({value * scale:.{shown}f} ± {stderr * scale:.{shown}f})e{power}"
     return f"{value:.{shown}f} ± {stderr:.{shown}f}"
 
 

@@ -134,7 +134,7 @@ def test_a_study_has_one_line_for_each_material(result, tmp_path):
     result.audit.energy["lost_masked_reflection"][:] = 0.125
     result.audit.energy["lost_masked_transmission"][:] = 0.0
     row = study.row(result, path)
-    assert row[:3] == ["synthetic", "complete", "2e5"]
+    assert row[:3] == ["synthetic", "complete", "1e5"], "rays per direction, as everywhere"
     assert "12.5 %" in row
     assert row[-1] == "1.23 kB"
     assert study.study_text([row, row]).count("synthetic") == 2

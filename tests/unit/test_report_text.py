@@ -18,6 +18,8 @@ from goniosim.report import text
         (0.0, 0.0, "0.00000"),
         (54.13, 0.31, "54.1 ± 0.3"),
         (54.13, 12.0, "54 ± 12"),
+        (-6.1e-14, 1.04e-13, "(-0.6 ± 1.0)e-13"),
+        (3.2e-11, 4e-12, "(3.2 ± 0.4)e-11"),
     ],
 )
 def test_the_error_decides_how_many_digits_a_value_has(value, stderr, shown):

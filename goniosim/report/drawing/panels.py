@@ -204,7 +204,8 @@ def note_coinciding(axes, channels, angle, f, sigma, top, size=8.0):
     words = ", ".join(" ≈ ".join(names) for names in same.values())
     halo = [withStroke(linewidth=2.5, foreground="white")]
     look = {"fontsize": size, "color": "0.3", "parse_math": False, "path_effects": halo}
-    axes.text(0.015, 0.97, words, transform=axes.transAxes, va="top", **look)
+    # Below the mark of the light, which may stand in this corner.
+    axes.text(0.015, 0.9, words, transform=axes.transAxes, va="top", **look)
 
 
 def channel_look(name, c, count):

@@ -30,7 +30,7 @@ def row(result, path):
     return [
         result.name,
         result.status,
-        text.count(result.rays.sum()),
+        text.counts(result.rays),
         text.duration(seconds),
         f"{sum(albedo):.4f}",
         f"{100.0 * float(np.max(lost)):.1f} %",
@@ -54,7 +54,7 @@ def study_text(rows):
     header = [
         "material",
         "status",
-        "rays",
+        "rays per\ndirection",
         "time",
         "mean\nalbedo",
         "lost to\nmasking",
