@@ -117,7 +117,7 @@ def test_just_enough_is_enough(room):
 
 DEEP = [dielectric(1.5 if i % 2 else 1.3) for i in range(800)] + [lambert(0.9)]
 HELP = {
-    "threads": (SLAB, [0.0, 30.0], {"rows": 400, "threads": 64}, 7e8, "threads would fit (--threads "),
+    "threads": (SLAB, [0.0, 30.0], {"rows": 400, "threads": 64}, 7e8, "threads would fit (simulation.threads: "),
     "directions": (
         PLASTIC,
         [float(i) for i in range(80)],
@@ -154,7 +154,7 @@ def test_the_refusal_names_numbers_and_what_would_help(room, case):
 def test_the_threads_that_are_named_fit_and_one_more_does_not(room):
     layers, theta, options, free, _ = HELP["threads"]
     room(free)
-    named = int(shortage(make_scene(layers, theta, **options)).split("--threads ")[1].rstrip(")"))
+    named = int(shortage(make_scene(layers, theta, **options)).split("simulation.threads: ")[1].rstrip(")"))
     assert shortage(make_scene(layers, theta, **{**options, "threads": named})) is None
     assert shortage(make_scene(layers, theta, **{**options, "threads": named + 1})) is not None
 
