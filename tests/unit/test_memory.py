@@ -91,6 +91,17 @@ def test_the_limits_of_containers_count(machine, case):
     assert free_memory(root) == (left, "left of the container's limit")
 
 
+def test_what_no_kernel_says_is_passed_over(machine):
+    odd = {
+        "proc/self/cgroup": "garbage\n\n1:2\n0::/job\n",
+        "sys/fs/cgroup/job/memory.max": "500\n",
+        "sys/fs/cgroup/job/memory.current": "100\n",
+        "sys/fs/cgroup/job/memory.stat": "odd\nactive_file many\ninactive_file 50\n",
+    }
+    root = machine({"proc/meminfo": MEMINFO.format(10**9), **odd})
+    assert free_memory(root) == (450, "left of the container's limit")
+
+
 @pytest.fixture
 def room(monkeypatch):
     """Pretend that so many bytes can be had."""
