@@ -5,16 +5,9 @@ from pathlib import Path
 
 import click
 
-from .options import PATH
+from .options import PATH, complete_models
 from .policy import debug_option, say
 from .signals import tidied_up, undisturbed
-
-
-def _complete_models(ctx, param, incomplete):
-    from goniosim.models import MODELS
-
-    chosen, comma, word = incomplete.rpartition(",")
-    return [f"{chosen}{comma}{name}" for name in MODELS if name.startswith(word)]
 
 
 @click.command()
@@ -22,7 +15,7 @@ def _complete_models(ctx, param, incomplete):
 @click.option(
     "--models",
     metavar="NAMES",
-    shell_complete=_complete_models,
+    shell_complete=complete_models,
     help="Models to compare, with commas between [default: all].",
 )
 @click.option(

@@ -93,6 +93,9 @@ class HintingGroup(click.Group):
             return f"{error.option_name} stands before the command"
         meant = [*(option for option in OPTIONS if _normal(option) == word), *_meant(word, OPTIONS)]
         here = _options(error.ctx.command)
+        # An option of this command goes before the same word elsewhere.
+        if known := [option for option in meant if option in here]:
+            return f"did you mean {known[0]}?"
         for option in (*meant, *difflib.get_close_matches(error.option_name, here, n=1)):
             if option in here:
                 return f"did you mean {option}?"

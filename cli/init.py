@@ -41,7 +41,8 @@ def init(name, output):
     if output == "-":
         click.echo(example(name), nl=False)
         return
-    path = output or f"{name}.yaml"
+    # Not mistaken for an option by the command that is named below.
+    path = f"./{output}" if output and output.startswith("-") else output or f"{name}.yaml"
     if os.path.lexists(path):
         raise OutputError(f"{path}: exists, and is not overwritten; choose another name with -o, or remove it")
     make_folder(os.path.dirname(path) or ".")

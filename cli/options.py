@@ -91,3 +91,11 @@ set_option = click.option(
     metavar="PATH=VALUE",
     help="Change one value of the scene, as in --set simulation.orders=3; may be repeated.",
 )
+
+
+def complete_models(ctx, param, incomplete):
+    """Names of models for the tab key; the last of those with commas between."""
+    from goniosim.models import MODELS
+
+    chosen, comma, word = incomplete.rpartition(",")
+    return [f"{chosen}{comma}{name}" for name in MODELS if name.startswith(word)]

@@ -2,7 +2,7 @@
 
 import click
 
-from .options import PATH, Real
+from .options import PATH, Real, complete_models
 from .policy import debug_option
 
 
@@ -28,7 +28,12 @@ from .policy import debug_option
     "--material", "materials", multiple=True, metavar="NAME", help="Of models.h5: only this material; may be repeated."
 )
 @click.option(
-    "--model", "models", multiple=True, metavar="NAME", help="Of models.h5: this model alone; may be repeated."
+    "--model",
+    "models",
+    multiple=True,
+    metavar="NAME",
+    shell_complete=complete_models,
+    help="Of models.h5: this model alone; may be repeated.",
 )
 @debug_option
 def plot(file, output, suffix, theta, materials, models):

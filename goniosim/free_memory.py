@@ -44,8 +44,10 @@ def _container(root: Path) -> list[tuple[int, str]]:
     """What is left in this process's group and in those around it."""
     found = []
     for line in _text(root / "proc/self/cgroup").splitlines():
-        _, controllers, path = line.split(":", 2)
-        if controllers and "memory" not in controllers.split(","):
+        _, _, rest = line.partition(":")
+        controllers, mark, path = rest.partition(":")
+        # What stands in for the kernel in some containers may say other things here.
+        if not mark or (controllers and "memory" not in controllers.split(",")):
             continue
         top = root / "sys/fs/cgroup" / ("memory" if controllers else "")
         group = top / path.lstrip("/")
@@ -63,8 +65,9 @@ def _left(folder: Path, limit: str, use: str, reclaimable: tuple[str, ...]) -> l
         room = int(_text(folder / limit)) - int(_text(folder / use))
     except ValueError:
         return []
-    statistics = dict(line.split(" ", 1) for line in _text(folder / "memory.stat").splitlines())
-    return [max(0, room + sum(int(statistics.get(name, 0)) for name in reclaimable))]
+    rows = [line.split() for line in _text(folder / "memory.stat").splitlines()]
+    statistics = {row[0]: int(row[1]) for row in rows if len(row) == 2 and row[1].isdecimal()}
+    return [max(0, room + sum(statistics.get(name, 0) for name in reclaimable))]
 
 
 def _address_space(root: Path) -> list[tuple[int, str]]:

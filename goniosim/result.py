@@ -3,6 +3,8 @@
 Axes are always ``[direction, channel, row, column]``; M directions, C channels,
 R rows, K columns.
 
+Two of them are equal only if they are the same object: arrays have no single answer to that.
+
 What people do with a result is a method of it, so that they find it, and a line long: it hands on to the
 room that knows how, which is imported when the method is called. The ground itself needs no other room.
 """
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from xarray import DataTree
 
 
-@dataclass
+@dataclass(eq=False)
 class Component:
     """One component of the scattered light, as cell averages.
 
@@ -59,7 +61,7 @@ class Component:
         return brief.component(self)
 
 
-@dataclass
+@dataclass(eq=False)
 class Cells:
     """The cells of the slices.
 
@@ -92,7 +94,7 @@ class Cells:
         return brief.cells(self)
 
 
-@dataclass
+@dataclass(eq=False)
 class Audit:
     """Where the incident energy went, per direction and channel, as fractions of it.
 
@@ -138,7 +140,7 @@ AUDIT_ENTRIES = {
 }
 
 
-@dataclass
+@dataclass(eq=False)
 class Cost:
     """What accuracy cost in time: one row per checkpoint.
 
@@ -166,7 +168,7 @@ class Cost:
         return brief.cost(self)
 
 
-@dataclass
+@dataclass(eq=False)
 class Result:
     """Everything one simulation of one material yields; what a result file holds.
 

@@ -22,7 +22,7 @@ def _check_threads():
     except ValueError:
         usable = False
     if not usable:
-        _refuse(name, "must be a whole number from 1 on (goniosim itself takes --threads)")
+        _refuse(name, "must be a whole number from 1 on (goniosim has threads of its own)")
 
 
 def _check_readings(noted):

@@ -21,7 +21,7 @@ MAX_SUBCELLS = 99
 Source = Result | StrPath
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Comparison:
     """Models against the results of simulations.
 
@@ -145,7 +145,9 @@ def compare(
 
 def _sources(results: object) -> list[Source]:
     kinds = (Result, str, os.PathLike)
-    given = [results] if isinstance(results, kinds) or not isinstance(results, Iterable) else list(results)
+    # A scene is a mapping, whose keys would pass for paths.
+    single = isinstance(results, (*kinds, Mapping))
+    given = list(results) if isinstance(results, Iterable) and not single else [results]
     if not given:
         raise ConfigError("there are no results to compare with")
     sources = [each for each in given if isinstance(each, kinds)]

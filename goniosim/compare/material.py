@@ -21,7 +21,7 @@ CONVERGED = 0.02
 INTEGRATIONS = ("fixed", "adaptive", "exhausted")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Slices:
     """Integrated slices of one variant and component.
 
@@ -51,7 +51,7 @@ class Slices:
         return f"<Slices: {directions} directions, {channels} channels, {rows} x {columns} cells>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Compared:
     """One variant against the reference, in one component.
 
@@ -93,7 +93,7 @@ class Compared:
         return _most(self.integration if direction is None else [self.integration[direction]])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MaterialComparison:
     """All models against one result.
 

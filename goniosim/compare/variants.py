@@ -64,6 +64,8 @@ def check_request(models=None, options=None):
     if not isinstance(models, Iterable | None):
         raise ConfigError(f"models must be names of models [got {models!r}]")
     models = None if models is None else list(models)
+    if models == []:
+        raise ConfigError("there are no models to compare; leave models out to compare all")
     problems = []
     for name in [*(models or ()), *options]:
         try:

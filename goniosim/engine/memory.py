@@ -206,8 +206,8 @@ _PURPOSE = {
 def _remedy(plan, rays, threads, room):
     """The smallest change that makes the simulation fit: of the threads, the directions or the cells."""
     if fewer := _most(lambda n: _needed(plan, rays, n).peak <= room, threads - 1):
-        return f"{_counted(fewer, 'thread')} would fit (--threads {fewer})"
-    also = "with --threads 1, " if threads > 1 else ""
+        return f"{_counted(fewer, 'thread')} would fit (simulation.threads: {fewer})"
+    also = "with 1 thread (simulation.threads), " if threads > 1 else ""
     orders = ", or fewer orders (simulation.orders)" if plan.orders else ""
 
     def fits(**changes):

@@ -65,7 +65,7 @@ def description(entries):
         A table of the results; below it a line for each other file of ours or of others.
     """
     results = [entry for entry in entries if entry["kind"] == "result"]
-    header = ["file", "status", "rays per\ndirection", "theta\n[deg]", "slices", "written [UTC]", "size"]
+    header = ["file", "status", "rays asked for\nper direction", "theta\n[deg]", "slices", "written [UTC]", "size"]
     lines = text.table(header, map(_row, results)) if results else []
     partial = sum(entry["status"] == "partial" for entry in results)
     size = text.size(sum(entry["bytes"] for entry in results))

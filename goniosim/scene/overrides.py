@@ -1,12 +1,12 @@
 """Changes to a scene before it is checked: ``path=value``."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from goniosim.errors import ConfigError
 from goniosim.scene.problems import closest
 from goniosim.scene.reading import read_value
-from goniosim.scene.tree import Node, Origin, Path, parse_path, show_path
+from goniosim.scene.tree import Node, Origin, Path, parse_path, show, show_path
 
 # Letters of an override that messages repeat.
 SHOWN = 200
@@ -47,6 +47,9 @@ def override(root: Node, assignments: Iterable[str | Override]) -> Node:
     ConfigError
         Not of that form, or the path leads nowhere; names all that do.
     """
+    if isinstance(assignments, str | Mapping) or not isinstance(assignments, Iterable):
+        form = "path=value, such as simulation.rays=1e6"
+        raise ConfigError(f"overrides must be a list of {form} [got {show(assignments)}]")
     problems: list[str] = []
     for each in assignments:
         change = each if isinstance(each, Override) else Override(str(each), f"override {each}")

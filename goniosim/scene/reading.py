@@ -12,7 +12,7 @@ from ruamel.yaml.nodes import Node as YamlNode
 
 from goniosim.errors import ConfigError
 from goniosim.scene.problems import Problem, config_error
-from goniosim.scene.tree import MAX_DEPTH, Node, Origin, show_path
+from goniosim.scene.tree import MAX_DEPTH, Node, Origin, show, show_path
 
 STDIN = "<stdin>"
 MAX_BYTES = 16_000_000
@@ -66,6 +66,8 @@ def _content(path: str | os.PathLike[str], source: str) -> bytes:
         raise ConfigError(f"{source}: is a folder: give the scene file in it") from None
     except OSError as error:
         raise ConfigError(f"{source}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise ConfigError(f"{show(source)}: cannot be the name of a file: {error}") from None
 
 
 def read_text(text: str, source: str) -> Node:

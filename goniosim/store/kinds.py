@@ -39,7 +39,7 @@ RESULT = Kind(
     filetype="goniosim-result",
     schema_version="1.1",
     what="a goniosim result",
-    writer="name a file that `goniosim simulate` wrote",
+    writer="name a file that a simulation wrote",
     remedy="restore it from a copy or simulate again",
 )
 MODELS = Kind(
@@ -47,7 +47,7 @@ MODELS = Kind(
     filetype="goniosim-models",
     schema_version="1.2",
     what="a file of integrated models",
-    writer="name a models.h5 that `goniosim compare` wrote",
+    writer="name a models.h5 that a comparison wrote",
     remedy="restore it from a copy or compare again",
 )
 KINDS = (RESULT, MODELS)

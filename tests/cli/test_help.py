@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.shell_completion import ShellComplete
+from goniosim_cli.main import main
 
 HEAVY = ("numpy", "numba", "matplotlib", "h5py", "pydantic", "ruamel", "tqdm")
 
@@ -103,3 +105,15 @@ def test_python_api_simulates_a_path_or_a_scene(folder):
     assert np.array_equal(
         by_path.components["reflection/internal"].energy, by_scene.components["reflection/internal"].energy
     )
+
+
+@pytest.mark.parametrize(
+    ("words", "begun", "names"),
+    [
+        (["compare", "--models"], "ww09,bati", ["ww09,bati19_ww", "ww09,bati19_belcour"]),
+        (["plot", "--model"], "bati", ["bati19_ww", "bati19_belcour"]),
+    ],
+)
+def test_names_of_models_are_completed(words, begun, names):
+    completion = ShellComplete(main, {}, "goniosim", "_GONIOSIM_COMPLETE")
+    assert [item.value for item in completion.get_completions(words, begun)] == names

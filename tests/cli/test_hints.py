@@ -23,6 +23,8 @@ from goniosim_cli.main import main
         ("simulate scene.yaml --out a.h5", "No such option '--out': did you mean --output?"),
         ("simulate scene.yaml --seeed 1", "No such option '--seeed': did you mean --seed?"),
         ("simulate scene.yaml --theta 30", "No such option '--theta': --theta belongs to goniosim plot"),
+        ("compare small.h5 --model ww09", "No such option '--model': did you mean --models?"),
+        ("plot small.h5 --models ww09", "No such option '--models': did you mean --model?"),
         ("simulate scene.yaml --gpu", "No such option '--gpu': not available: rays are traced by the processor"),
         ("simulate --config scene.yaml", "'--config': name the file behind the command, without an option"),
         ("simulate scene.yaml --version", "No such option '--version': --version stands before the command"),

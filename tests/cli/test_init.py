@@ -73,6 +73,11 @@ def test_nothing_is_overwritten(goniosim, folder):
     assert not (folder / "nowhere").exists()
 
 
+def test_the_command_that_follows_works_for_any_name(goniosim, folder):
+    assert goniosim("init", "-o", "-x.yaml")[1].endswith("  goniosim simulate ./-x.yaml\n")
+    assert (folder / "-x.yaml").exists()
+
+
 def test_a_dash_prints_it(goniosim, folder):
     assert goniosim("init", "slab", "-o", "-") == (0, example("slab"), "")
     assert not (folder / "slab.yaml").exists()

@@ -159,7 +159,7 @@ def test_a_note_that_was_added_is_told_and_no_damage(goniosim, models):
 def test_compare_with_a_file_of_models_is_8(goniosim, models):
     code, out, err = goniosim("compare", "models.h5")
     assert (code, out) == (8, "")
-    one_line(err, "models.h5", "holds integrated models", "name a file that `goniosim simulate` wrote")
+    one_line(err, "models.h5", "holds integrated models", "name a file that a simulation wrote")
 
 
 def test_a_folder_of_nothing_but_models_is_8(goniosim, models, folder):

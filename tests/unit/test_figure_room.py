@@ -15,7 +15,7 @@ from goniosim.report.comparison.direction import direction_figure
 from goniosim.report.comparison.errors import errors_figure
 from goniosim.report.comparison.lobes import lobes_figure
 from goniosim.report.comparison.views import views_figure
-from goniosim.report.drawing import letters
+from goniosim.report.drawing import legend, letters
 from goniosim.report.drawing.files import STYLE
 from goniosim.report.simulation.direction import direction_figure as figure_of_a_result
 from goniosim.report.simulation.overview import overview_figure
@@ -108,6 +108,14 @@ def test_tick_labels_do_not_touch():
     boxes = [label.get_window_extent(renderer) for label in tick_labels(axes.yaxis)]
     assert len(boxes) >= 2
     assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
+
+@pytest.mark.parametrize("number", range(1, 13))
+@pytest.mark.parametrize("room", [3.0, 5.0, 8.0])
+def test_a_legend_fills_its_rows(number, room):
+    columns, _ = legend.layout(["a label"] * number, 9.0, room)
+    rows = -(-number // columns)
+    assert columns == -(-number // rows)
 
 
 def test_words_are_measured_and_broken():

@@ -91,6 +91,17 @@ def test_the_limits_of_containers_count(machine, case):
     assert free_memory(root) == (left, "left of the container's limit")
 
 
+def test_what_no_kernel_says_is_passed_over(machine):
+    odd = {
+        "proc/self/cgroup": "garbage\n\n1:2\n0::/job\n",
+        "sys/fs/cgroup/job/memory.max": "500\n",
+        "sys/fs/cgroup/job/memory.current": "100\n",
+        "sys/fs/cgroup/job/memory.stat": "odd\nactive_file many\ninactive_file 50\n",
+    }
+    root = machine({"proc/meminfo": MEMINFO.format(10**9), **odd})
+    assert free_memory(root) == (450, "left of the container's limit")
+
+
 @pytest.fixture
 def room(monkeypatch):
     """Pretend that so many bytes can be had."""
@@ -117,7 +128,7 @@ def test_just_enough_is_enough(room):
 
 DEEP = [dielectric(1.5 if i % 2 else 1.3) for i in range(800)] + [lambert(0.9)]
 HELP = {
-    "threads": (SLAB, [0.0, 30.0], {"rows": 400, "threads": 64}, 7e8, "threads would fit (--threads "),
+    "threads": (SLAB, [0.0, 30.0], {"rows": 400, "threads": 64}, 7e8, "threads would fit (simulation.threads: "),
     "directions": (
         PLASTIC,
         [float(i) for i in range(80)],
@@ -154,7 +165,7 @@ def test_the_refusal_names_numbers_and_what_would_help(room, case):
 def test_the_threads_that_are_named_fit_and_one_more_does_not(room):
     layers, theta, options, free, _ = HELP["threads"]
     room(free)
-    named = int(shortage(make_scene(layers, theta, **options)).split("--threads ")[1].rstrip(")"))
+    named = int(shortage(make_scene(layers, theta, **options)).split("simulation.threads: ")[1].rstrip(")"))
     assert shortage(make_scene(layers, theta, **{**options, "threads": named})) is None
     assert shortage(make_scene(layers, theta, **{**options, "threads": named + 1})) is not None
 

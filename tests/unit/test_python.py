@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import goniosim
-from goniosim.errors import ConfigError, OutputError, StoppedError
+from goniosim.compare.comparison import Comparison
+from goniosim.errors import ConfigError, OutputError, ResourceError, StoppedError
 
 SCENE = {
     "material": {"name": "coated", "layers": [{"interface": {"type": "dielectric", "eta": 1.5, "alpha": 0.2}}]},
@@ -246,17 +247,45 @@ def test_a_study_finds_what_stands_in_its_way_before_it_begins(tmp_path):
         goniosim.simulate_study(STUDY, folder=tmp_path, rays=MANY)
 
 
+def test_results_are_compared_by_identity():
+    # With arrays inside, == and `in` of a plain dataclass raise.
+    one, other = (goniosim.simulate(SCENE, rays=100) for _ in range(2))
+    assert one == one and one != other and other not in [one]
+    assert {one: 1, other: 2}[other] == 2
+    assert one.cells != other.cells and one.audit != other.audit
+    assert Comparison([], []) != Comparison([], [])
+
+
+def test_memory_is_told_without_words_of_the_command_line(monkeypatch):
+    monkeypatch.setattr("goniosim.engine.memory.free_memory", lambda: (1, "to hand"))
+    with pytest.raises(ResourceError, match="not enough memory") as refused:
+        goniosim.simulate({**SCENE, "slice": {"rows": 900, "columns": 3600}}, threads=2)
+    assert "--" not in str(refused.value)
+
+
+@pytest.mark.parametrize("overrides", ["simulation.rays=1e6", {"simulation.rays": 1e6}, None, 3])
+def test_overrides_are_a_list(overrides):
+    with pytest.raises(ConfigError, match="overrides must be a list"):
+        goniosim.load_scene(SCENE, overrides)
+
+
+def test_what_is_no_path_at_all_is_said_to_be_none():
+    with pytest.raises(ConfigError, match="cannot be the name of a file"):
+        goniosim.load_scene("a\0b")
+
+
 def test_arguments_of_comparisons_are_checked():
     result = goniosim.simulate(SCENE)
     for arguments, message in (
         ({"models": 5}, "models must be names of models"),
+        ({"models": []}, "there are no models to compare"),
         ({"models": "ww0"}, "there is no model 'ww0'.*did you mean ww09"),
         ({"options": "masking"}, "options must be a mapping"),
         ({"subcells": True}, "subcells must be a whole number"),
     ):
         with pytest.raises(ConfigError, match=message):
             goniosim.compare(result, **arguments)
-    for wrong in (5, [], [SCENE]):
+    for wrong in (5, [], [SCENE], SCENE):
         with pytest.raises(ConfigError, match="no results|must be results"):
             goniosim.compare(wrong)
     for angles in (["a", 0, 0], [[1, 2], [1, 2, 3], 0], [None, 0, 0]):

@@ -156,7 +156,9 @@ def layout(labels, size, room, rows=None):
     most = len(labels)
     fewest = 1 if rows is None else -(-most // rows)
     for columns in range(most, fewest - 1, -1):
-        if _width(labels, size, columns) <= room:
+        # Where fewer columns have as many rows, the last row would hold little more than the first column.
+        filled = -(-most // columns)
+        if -(-most // filled) == columns and _width(labels, size, columns) <= room:
             return columns, size
     columns = max(fewest, 1)
     return columns, 0.98 * size * min(1.0, room / _width(labels, size, columns))
