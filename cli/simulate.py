@@ -40,6 +40,8 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, qui
     Examples: goniosim simulate quickstart.yaml
               goniosim simulate quickstart.yaml --rays 1e7 --set simulation.orders=3
     """  # noqa: D301
+    if output == "-":
+        raise click.UsageError("a result is a file, not a stream: name it with -o")
     from goniosim.engine import require_memory
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study

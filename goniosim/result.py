@@ -249,7 +249,8 @@ class Result:
         """
         from goniosim.store import write_result
 
-        write_result(self, path, overwrite=overwrite)
+        # Whoever called it has it still.
+        write_result(self, path, overwrite=overwrite, rescued=False)
         return Path(path)
 
     def albedo(self, component: str | None = None) -> tuple[np.ndarray, np.ndarray]:

@@ -14,7 +14,9 @@ from .memory import threads_of
 from .plan import Plan, make_plan
 from .unit import Tally, Workspace, unit_key
 
+# Rays between two looks at the clock: fewer where each of them meets many interfaces.
 _RAYS_PER_UNIT = 1 << 13
+_MOST_EVENTS = 1 << 18
 
 
 def warm_up(scene):
@@ -62,6 +64,7 @@ def probe(scene, seconds=1.0):
     compile_seconds = warm_up(plan)
     directions = len(plan.theta_deg)
     faint = faint_weights(plan)
+    unit_rays = max(1, min(_RAYS_PER_UNIT, _MOST_EVENTS // len(plan.kinds)))
     spaces = [(Workspace(plan, faint), Tally(plan)) for _ in range(threads)]
     start = time.perf_counter()
 
@@ -74,7 +77,7 @@ def probe(scene, seconds=1.0):
         while events == 0 or time.perf_counter() - start < seconds:
             direction = unit % directions
             key = unit_key(scene.simulation.seed, direction, unit)
-            report = workspace.run(direction, _RAYS_PER_UNIT, key, tally, threading.Event())
+            report = workspace.run(direction, unit_rays, key, tally, threading.Event())
             rays[direction] += report.rays
             lost[direction] += tally.ledgers[:, LOST_CAP].sum(axis=0)
             tally.ledgers.fill(0.0)

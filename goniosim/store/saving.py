@@ -9,7 +9,12 @@ from goniosim.writing import StrPath
 
 
 def write_result(
-    result: Result, path: StrPath, *, overwrite: bool = False, reservation: Reservation | None = None
+    result: Result,
+    path: StrPath,
+    *,
+    overwrite: bool = False,
+    reservation: Reservation | None = None,
+    rescued: bool = True,
 ) -> None:
     """Write a result file, whole or not at all.
 
@@ -23,6 +28,8 @@ def write_result(
     reservation : Reservation, optional
         Of the same path, made by `reserve_output` before the computation.
         It is used up.
+    rescued : bool
+        Whether a result that cannot be written is saved in the temporary directory instead.
 
     Raises
     ------
@@ -30,8 +37,7 @@ def write_result(
         If the file has more rays of the same scene.
     OutputError
         If the file cannot be written there, or holds the result of another
-        scene; the result is then saved in the temporary directory, and the
-        message says where.
+        scene; the message says where a rescued result was saved.
     ValueError
         If the result contradicts the schema (a NaN, a wrong shape): a fault
         of the program.
@@ -49,4 +55,6 @@ def write_result(
     except FewerRaysError:
         raise
     except OutputError as error:
+        if not rescued:
+            raise
         raise OutputError(f"{error}; {rescue(parts, path)}") from error

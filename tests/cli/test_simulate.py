@@ -78,6 +78,11 @@ def test_light_lost_at_the_event_cap_is_said_where_it_is_lost(goniosim, folder):
     assert code == 0 and "index-10.0" in line and "rays of the probe" in line
 
 
+def test_a_result_is_no_stream(goniosim, folder):
+    code, _, err = goniosim("simulate", "scene.yaml", "-o", "-")
+    assert code == 2 and "a result is a file" in err and not (folder / "-").exists()
+
+
 def test_quiet_prints_nothing(goniosim, folder):
     assert goniosim("simulate", "scene.yaml", "-q", "--rays", "1e3") == (0, "", "")
 

@@ -150,3 +150,9 @@ def test_orders_sum_to_their_component():
         assert np.allclose(component.energy, plain.components[name].energy, rtol=1e-12, atol=1e-18)
         assert (component.hits == plain.components[name].hits).all()
         assert all(order.energy.sum() > 0 for order in component.orders.values())
+
+
+def test_a_probe_of_a_deep_stack_looks_at_the_clock_soon():
+    layers = [dielectric(1.1 if i % 2 else 1.5, 0.0) for i in range(400)]
+    scene = make_scene(layers, [30.0], threads=1)
+    assert probe(scene, seconds=0.0).rays <= (1 << 18) // 400

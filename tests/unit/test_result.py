@@ -10,7 +10,7 @@ from matplotlib.image import imread
 
 import goniosim
 from goniosim.engine.estimate import mean_and_error
-from goniosim.errors import UnusableResultError
+from goniosim.errors import OutputError, UnusableResultError
 from goniosim.report.simulation.figures import draw
 from synthetic import make_result
 
@@ -148,3 +148,14 @@ def test_save_gives_the_path_and_open_result_reads_it(result, tmp_path):
     path = result.save(str(tmp_path / "result.h5"), overwrite=True)
     assert path == tmp_path / "result.h5"
     assert goniosim.open_result(path).name == result.name
+
+
+def test_a_refused_save_leaves_nothing_behind(result, tmp_path, monkeypatch):
+    """Whoever saves has the result still: no copy is rescued."""
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(temporary))
+    (tmp_path / "notes.h5").write_text("mine")
+    with pytest.raises(OutputError, match="not a goniosim result"):
+        result.save(tmp_path / "notes.h5")
+    assert list(temporary.iterdir()) == []

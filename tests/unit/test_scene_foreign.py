@@ -64,6 +64,12 @@ def problems_of(text, source="f.yaml"):
         ("eta: 1.5,", "intIOR: 1.5,", [f"{COAT}.intIOR: {ETA} (did you mean eta: 1.5?)"]),
         ("eta: 1.45", "n: [1, 2, 3]", [f"{METAL}.n: {ETA} (did you mean eta: [1, 2, 3]?)"]),
         ("alpha: 0.2}", "roughness: 0.3}", [f"{COAT}.roughness: {ALPHA} (did you mean alpha: 0.09?)"]),
+        ("alpha: 0.2}", "roughness: -1}", [f"{COAT}.roughness: {ALPHA} (did you mean alpha?)"]),
+        (
+            "rays: 1e7",
+            "rays_per_direction: 1e2",
+            [f"f.yaml:10: simulation.rays_per_direction: {RAYS} (did you mean rays: 100?)"],
+        ),
         (
             "alpha: 0.2}",
             "glossiness: 0.7}",

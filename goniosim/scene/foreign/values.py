@@ -18,7 +18,13 @@ def unchanged(value: object, _: Siblings) -> object:
 
 def squared(value: object, _: Siblings) -> object:
     """Square of a number, or of each in a list."""
-    return _each(value, lambda x: x * x)
+    return _each(value, _square)
+
+
+def _square(roughness: float) -> float:
+    if roughness < 0.0:
+        raise ValueError("no roughness is negative")
+    return roughness * roughness
 
 
 def one_minus_squared(value: object, _: Siblings) -> object:

@@ -67,7 +67,7 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
         _called("slice", "the cells are those of a slice", "grid sensor detector film output resolution cells bins"),
         _called("material", "the stack of layers is called a material", "bsdf sample stack"),
         _needless("several materials make a study: write study: {name: ..., materials: [...]}", "materials"),
-        _needless("layers belong to material", "layers"),
+        _needless("layers and a name belong to material", "layers name"),
         _needless("angles belong to incident: {theta_deg: [...]}", "theta_deg theta angles"),
         _needless("this belongs to simulation: {rays: ..., seed: ...}", "rays samples spp seed threads"),
         _SPECTRA,
@@ -96,7 +96,7 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
         _called(
             "alpha",
             "alpha is the GGX width, alpha = roughness^2",
-            "roughness linear_roughness perceptual_roughness",
+            "roughness linear_roughness perceptual_roughness rough",
             values.squared,
         ),
         _called(
@@ -105,7 +105,7 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
             "glossiness gloss smoothness",
             values.one_minus_squared,
         ),
-        _called("alpha", "alpha is the GGX width", "alpha_g alpha_ggx ggx_alpha ggx width m"),
+        _called("alpha", "alpha is the GGX width", "alpha_g alpha_ggx ggx_alpha ggx roughness_alpha width m"),
         _needless("above lies what the interface above says, and air on top", "ext_ior eta_ext n_ext"),
         _needless(_MEDIUM, "tau thickness depth sigma_a sigma_t absorption interior medium"),
         _needless("the reflection follows from eta and kappa", "specular specular_reflectance f0 fresnel"),
@@ -115,6 +115,7 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
         ),
         _lacking("a choice of distribution; every rough interface is GGX: remove this key", "distribution ndf"),
         _lacking("a choice of masking; it is that of Smith, separable", "masking shadowing geometry"),
+        _lacking("media absorb and do not scatter; nor do interfaces know a phase function", "g phase_function hg"),
         _lacking("layers do not interfere", "thin_film thin_film_thickness film_thickness iridescence"),
         _lacking("interfaces are dielectric, conductor or lambert", "sheen clearcoat subsurface transmission metallic"),
         _UNIFORM,
@@ -149,7 +150,7 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
             values.absorption_times_thickness,
         ),
         _called("tau", _TAU, "thickness depth d distance height length", values.absorption_times_thickness),
-        _called("tau", "tau is the optical depth of one crossing", "optical_depth optical_thickness"),
+        _called("tau", "tau is the optical depth of one crossing", "optical_depth optical_thickness od"),
         _called(
             "tau",
             "tau is the optical depth of one crossing, tau = -ln(transmittance)",
@@ -186,7 +187,8 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
         _called(
             "rays",
             "rays is the number of rays for each incident direction",
-            "samples spp n n_rays num_rays n_samples num_samples sample_count samples_per_pixel photons paths",
+            "samples spp n n_rays num_rays rays_per_direction n_samples num_samples sample_count samples_per_pixel "
+            "photons paths",
         ),
         _called(
             "threads",
