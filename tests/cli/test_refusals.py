@@ -57,24 +57,27 @@ def test_folders_of_figures_and_reports_are_outputs(goniosim, folder):
     for command in ("plot", "compare"):
         _refused(goniosim(command, "r.h5", "-o", LONG), 4, "File name too long", "choose a shorter name")
         _refused(goniosim(command, "r.h5", "-o", "scene.yaml"), 4, "scene.yaml", "choose another place")
+    os.rename("r.h5", f"{'n' * 251}.h5")
+    for command in ("plot", "compare"):
+        _refused(goniosim(command, f"{'n' * 251}.h5"), 4, "File name too long", "choose a shorter name")
 
 
 @pytest.mark.parametrize(
-    ("error", "words"),
+    ("error", "code", "words"),
     [
-        (OSError(errno.EMFILE, os.strerror(errno.EMFILE), "a.h5"), ("a.h5: Too many open files", "ulimit -n")),
-        (BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)), ("temporarily unavailable", "ulimit -u")),
-        (BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE)), ("Broken pipe",)),
-        (FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)), ("current folder is gone", "cd")),
-        (MemoryError(), ("not enough memory", "fewer threads")),
+        (OSError(errno.EMFILE, os.strerror(errno.EMFILE), "a.h5"), 9, ("a.h5: Too many open files", "ulimit -n")),
+        (BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)), 9, ("temporarily unavailable", "ulimit -u")),
+        (BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE)), 9, ("Broken pipe",)),
+        (FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)), 9, ("current folder is gone", "cd")),
+        (MemoryError(), 4, ("memory ran out", "fewer or smaller files")),
     ],
 )
-def test_what_nobody_foresaw_is_no_bug(goniosim, monkeypatch, error, words):
+def test_what_nobody_foresaw_is_no_bug(goniosim, monkeypatch, error, code, words):
     def refuse(path):
         raise error
 
     monkeypatch.setattr("goniosim.store.open_result", refuse)
-    _refused(goniosim("info", "x.h5"), 9, *words)
+    _refused(goniosim("info", "x.h5"), code, *words)
 
 
 @pytest.fixture
@@ -118,7 +121,7 @@ def test_without_a_thread_a_simulation_is_refused(goniosim, folder, few_threads)
 def test_why_compiled_code_is_not_kept_is_said_to_those_who_ask(goniosim, folder, monkeypatch):
     monkeypatch.setattr("goniosim._jit.folder.notices", ["compiled code is not kept in /x: others may change /x"])
     for verbose in (False, True):
-        code, _, err = goniosim("simulate", "scene.yaml", "--rays", "1e3", *["-v"] * verbose)
+        code, _, err = goniosim("simulate", "scene.yaml", "--rays", "1e3", "--overwrite", *["-v"] * verbose)
         assert code == 0 and ("others may change /x" in err) == verbose
 
 
