@@ -41,6 +41,10 @@ SCALES = {
 }
 
 
+# No number of a result comes near it, and its square and sums of such are finite still.
+_HUGE = 1e100
+
+
 @dataclass(frozen=True)
 class Range:
     """Which numbers a dataset may hold; whatever the range, they are finite.
@@ -53,8 +57,8 @@ class Range:
         Whether ``high`` itself is excluded.
     """
 
-    low: float = -np.inf
-    high: float = np.inf
+    low: float = -_HUGE
+    high: float = _HUGE
     open_high: bool = False
 
     def holds(self, values: np.ndarray) -> bool:
@@ -64,13 +68,13 @@ class Range:
         # A NaN anywhere makes both of them NaN, and every comparison false.
         low, high = values.min(), values.max()
         below = high < self.high if self.open_high else high <= self.high
-        return bool(self.low <= low and below and -np.inf < low and high < np.inf)
+        return bool(self.low <= low and below)
 
     def __str__(self) -> str:
         if self == ANY:
-            return "finite"
-        if self.high == np.inf:
-            return f"finite and {self.low:g} or more"
+            return f"finite and below {_HUGE:g}"
+        if self.high == _HUGE:
+            return f"finite and {self.low:g} or more, below {_HUGE:g}"
         return f"from {self.low:g} to {'below ' if self.open_high else ''}{self.high:g}"
 
 
@@ -79,6 +83,8 @@ NOT_NEGATIVE = Range(0)
 POLAR = Range(0, 90, open_high=True)
 AZIMUTH = Range(0, 360, open_high=True)
 FLAG = Range(0, 1)
+# As many as a scene may ask for rays.
+COUNT = Range(0, 1e15)
 
 
 @dataclass(frozen=True)
@@ -165,7 +171,7 @@ DATASETS = (
     Dataset("COMPONENT/stderr", _SLICE, "float64", "1", "standard error of energy", NOT_NEGATIVE),
     Dataset("COMPONENT/bsdf", _SLICE, "float64", "sr-1", "BSDF averaged over the cell", NOT_NEGATIVE),
     Dataset("COMPONENT/bsdf_stderr", _SLICE, "float64", "sr-1", "standard error of bsdf", NOT_NEGATIVE),
-    Dataset("COMPONENT/hits", _CELL, "int64", "1", "paths that deposited energy in the cell", NOT_NEGATIVE),
+    Dataset("COMPONENT/hits", _CELL, "int64", "1", "paths that deposited energy in the cell", COUNT),
     *(Dataset(f"audit/{entry}", _TOTAL, "float64", "1", meaning) for entry, meaning in AUDIT_ENTRIES.items()),
     Dataset("audit/ENTRY_stderr", _TOTAL, "float64", "1", "standard error of the audit entry", NOT_NEGATIVE),
     Dataset(

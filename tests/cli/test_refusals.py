@@ -56,7 +56,10 @@ def test_folders_of_figures_and_reports_are_outputs(goniosim, folder):
     write_result(make_result(), folder / "r.h5")
     for command in ("plot", "compare"):
         _refused(goniosim(command, "r.h5", "-o", LONG), 4, "File name too long", "choose a shorter name")
-        _refused(goniosim(command, "r.h5", "-o", "scene.yaml"), 4, "scene.yaml", "another")
+        _refused(goniosim(command, "r.h5", "-o", "scene.yaml"), 4, "scene.yaml", "choose another place")
+    os.rename("r.h5", f"{'n' * 251}.h5")
+    for command in ("plot", "compare"):
+        _refused(goniosim(command, f"{'n' * 251}.h5"), 4, "File name too long", "choose a shorter name")
 
 
 @pytest.mark.parametrize(

@@ -45,10 +45,11 @@ class ReportFolder:
     def __init__(self, folder, materials):
         self._shown = folder
         self._folder = Path(os.path.realpath(folder))
+        # Asking may fail too: the name may be too long.
         with explained(folder):
-            in_the_way = self._folder.exists() and not self._folder.is_dir()
-        if in_the_way:
-            raise OutputError(f"{folder}: is not a folder; {_OTHER_PLACE}")
+            exists = self._folder.exists()
+        if exists and not self._folder.is_dir():
+            raise OutputError(f"{folder}: is not a folder; choose another place: {_OTHER_PLACE}")
         remove_dead([self._folder])
         if self._folder.is_dir():
             remove_dead([self._folder], inside=True)

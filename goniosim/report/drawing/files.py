@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib import rc_context, rcdefaults, rcParams
 
 from ...errors import OutputError
-from ...writing import replacing
+from ...writing import explained, replacing
 
 STYLE = {
     "figure.dpi": 150,
@@ -87,7 +87,9 @@ def refuse_foreign(paths):
     OutputError
     """
     for path in map(Path, paths):
-        if path.exists() and not is_figure(path):
+        with explained(path):
+            exists = path.exists()
+        if exists and not is_figure(path):
             raise OutputError(
                 f"{path}: exists and is not a figure that goniosim drew, so it is not overwritten; "
                 "choose another folder with -o, or remove it"
