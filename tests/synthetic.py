@@ -176,10 +176,12 @@ def _audit(rng, totals, shape, rays):
         "transmitted": "transmission",
     }
     energy = {entry: totals.get(names.get(entry), np.zeros(shape)) for entry in AUDIT_ENTRIES}
+    # As sampled: nearly what the integration says.
+    energy["reflected_direct"] = energy["reflected_direct"] / 1.0001
     energy["lost_masked_reflection"] = rng.uniform(0, 0.01, shape)
     energy["absorbed_base"] = 1 - sum(energy.values())
     stderr = {entry: np.sqrt(np.abs(value) / rays) for entry, value in energy.items()}
-    return Audit(energy, stderr, energy["reflected_direct"] * 1.0001, np.full(shape, 1e-9))
+    return Audit(energy, stderr, totals.get("reflection/direct", np.zeros(shape)), np.full(shape, 1e-9))
 
 
 def _cost(components, rays):

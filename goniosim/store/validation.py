@@ -19,6 +19,8 @@ from goniosim.scene.model import FileName
 MAX_CHECKPOINTS = 100_000
 _SUM = 1e-6
 _ANGLE = 1e-9
+# Smaller numbers have lost their digits.
+_TINY = 1e-300
 
 Header = Mapping[str, str | int]
 
@@ -116,6 +118,11 @@ GEOMETRY = (
         lambda it, scene: it.cells.parametrization == scene.slice.parametrization,
     ),
     Rule(
+        "cells/solid_angle",
+        "sum to 2 pi in each direction",
+        lambda it, scene: np.allclose(it.cells.solid_angle.sum(axis=(1, 2)), 2.0 * np.pi, rtol=_SUM, atol=0.0),
+    ),
+    Rule(
         "cells/projected_solid_angle",
         "sum to pi in each direction",
         lambda it, scene: np.allclose(it.cells.projected_solid_angle.sum(axis=(1, 2)), np.pi, rtol=_SUM, atol=0.0),
@@ -148,6 +155,23 @@ RESULT = (
         "be there for sampled components, and only for them",
         lambda result, scene: all(
             (component.hits is None) == (name == "reflection/direct") for name, component in result.components.items()
+        ),
+    ),
+    Rule(
+        "COMPONENT/energy",
+        "sum to what the audit says of the component",
+        lambda result, scene: all(
+            np.allclose(component.energy.sum(axis=(2, 3)), _audited(result, name), rtol=_SUM, atol=_SUM)
+            for name, component in result.components.items()
+        ),
+    ),
+    Rule(
+        "COMPONENT/bsdf",
+        "be the energy over the projected solid angle in valid cells, and 0 elsewhere",
+        lambda result, scene: all(
+            _is_averaged(part, result.cells)
+            for component in result.components.values()
+            for part in (component, *component.orders.values())
         ),
     ),
     Rule("audit", "sum to 1 wherever rays were traced", lambda result, scene: _is_balanced(result)),
@@ -214,6 +238,24 @@ def _is_label(text: str) -> bool:
 
 def _is_even(edges: np.ndarray, end: float) -> bool:
     return np.allclose(edges, np.linspace(0.0, end, len(edges)), rtol=0.0, atol=_ANGLE)
+
+
+def _audited(result: Any, component: str) -> np.ndarray:
+    """Energy of a component as the audit says, shape (M, C)."""
+    audit = result.audit
+    sampled = {"reflection/internal": "reflected_internal", "transmission": "transmitted"}
+    return audit.energy[sampled[component]] if component in sampled else audit.direct_integrated
+
+
+def _is_averaged(part: Any, cells: Any) -> bool:
+    # One direction after the other: slices may be large.
+    for number, valid in enumerate(cells.valid):
+        size = np.where(valid, cells.projected_solid_angle[number], 0.0)
+        for bsdf, energy in ((part.bsdf, part.energy), (part.bsdf_stderr, part.stderr)):
+            there = np.where(size > 0.0, energy[number], 0.0)
+            if not np.allclose(bsdf[number] * size, there, rtol=_SUM, atol=_TINY) or bsdf[number][:, size == 0.0].any():
+                return False
+    return True
 
 
 def _is_balanced(result: Any) -> bool:

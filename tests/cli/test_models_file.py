@@ -215,3 +215,14 @@ def test_a_name_that_leads_elsewhere_is_refused(goniosim, results, folder):
     assert code == 6
     one_line(err, "plastic.h5", "name must be usable as a file name")
     assert not (folder / "report").exists()
+
+
+def test_nothing_is_drawn_if_any_of_the_slices_is_wrong(goniosim, folder, models):
+    def edit(file):
+        values = file["zinc/ww09/reflection/internal/energy"]
+        values[...] = -1.0 - values[...]
+
+    craft(models, edit)
+    code, out, err = goniosim("plot", "models.h5", "-o", "figures")
+    assert (code, out) == (6, "") and not (folder / "figures").exists()
+    one_line(err, "reflection/internal/energy must be")

@@ -67,14 +67,17 @@ def draw(models, folder, stem, *, suffix="png", theta_deg=None, materials=None, 
     labels = _chosen("model", labels, [*dict.fromkeys(_names(chosen))])
     for material in chosen:
         directions.chosen(material.theta_deg, theta_deg)
+    seen = [
+        (material, entry)
+        for material in chosen
+        for entry in material.models
+        if not labels or entry.label in labels or entry.model in labels
+    ]
+    for material, entry in seen:
+        # Before anything is written: reading says what is wrong with them.
+        models.slices(material, entry)
     make_folder(folder)
     if labels:
-        seen = [
-            (material, entry)
-            for material in chosen
-            for entry in material.models
-            if entry.label in labels or entry.model in labels
-        ]
         parts = distinct(f"{material.name}-{entry.label}" for material, entry in seen)
         for (material, entry), part in zip(seen, parts, strict=True):
             one = _alone(models, material, entry)
