@@ -14,9 +14,10 @@ from .signals import tidied_up, undisturbed
 @click.argument("results", type=PATH, metavar="RESULT_OR_FOLDER")
 @click.option(
     "--models",
+    multiple=True,
     metavar="NAMES",
     shell_complete=complete_models,
-    help="Models to compare, with commas between [default: all].",
+    help="Models to compare, with commas between; may be repeated [default: all].",
 )
 @click.option(
     "-o",
@@ -88,7 +89,7 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
 
 
 def _names(models):
-    return [name.strip() for name in models.split(",")] if models is not None else None
+    return [name.strip() for each in models for name in each.split(",")] if models else None
 
 
 def _options(settings):

@@ -142,8 +142,12 @@ def _kept(kept, planned):
 
     held = counts(np.concatenate([standing.rays for standing in kept.values()]))
     if planned == 1:
-        return f"{next(iter(kept))} stays as it is: it holds {held} rays per direction of this scene"
-    return f"{len(kept)} of {planned} materials are finished: skipped (their files hold {held} rays per direction)"
+        ((path, standing),) = kept.items()
+        words = " (partial)" if standing.status == "partial" else ""
+        return f"{path} stays as it is{words}: it holds {held} rays per direction of this scene"
+    partial = sum(standing.status == "partial" for standing in kept.values())
+    what = f"have enough rays, though {partial} of them partial" if partial else "are finished"
+    return f"{len(kept)} of {planned} materials {what}: skipped (their files hold {held} rays per direction)"
 
 
 def require_room(scenes, output, many):

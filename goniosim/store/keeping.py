@@ -36,12 +36,15 @@ class Standing:
         Traced from each direction; None if the file is damaged or of another scene.
     differences : list of str
         What its scene differs in from the one asked for, see `goniosim.scene.differences`.
+    status : str
+        ``complete`` or ``partial``, where ``rays`` are known.
     damage : str
         What is wrong with the file, if it is damaged.
     """
 
     rays: np.ndarray | None = None
     differences: tuple[str, ...] = ()
+    status: str = ""
     damage: str = ""
 
     def holds(self, rays: ArrayLike) -> bool:
@@ -76,7 +79,8 @@ def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: st
         If it is not a result, or one that only a newer goniosim can read.
     """
     try:
-        there = str(read_header(path).get("config_yaml", ""))
+        header = read_header(path)
+        there = str(header.get("config_yaml", ""))
         found = () if there == config_yaml else _differences(there, scene)
         if found:
             return Standing(differences=found)
@@ -91,7 +95,7 @@ def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: st
         # Nothing, or something that is none of ours: this tells.
         reserve_output(path, 0).release()
         return None
-    return Standing(traced)
+    return Standing(traced, status=str(header["status"]))
 
 
 def refuse_newer(path: StrPath) -> None:

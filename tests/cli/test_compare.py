@@ -55,7 +55,9 @@ def report(tmp_path_factory):
         "--subcells",
         "9",
         "--models",
-        "ww09,bati19_ww,belcour18_forward",
+        "ww09,bati19_ww",
+        "--models",
+        "belcour18_forward",
         "--set",
         "ww09.masking=correlated",
     )

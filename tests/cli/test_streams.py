@@ -91,7 +91,7 @@ def test_every_command_keeps_its_exit_code(folder, command, code):
 @pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
 def test_names_are_printed_in_any_encoding(folder, encoding):
-    write_result(make_result(name="käse-π"), folder / "käse-π.h5")
+    write_result(make_result(), folder / "käse-π.h5")
     code, out, err = _shell("{} info käse-π.h5", folder, PYTHONIOENCODING=encoding)
     assert (code, err) == (0, "") and "se-" in out
 
