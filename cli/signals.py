@@ -26,7 +26,7 @@ def _handle_all(handler):
 
 @contextlib.contextmanager
 def tidied_up():
-    """While active, SIGTERM and SIGHUP end the command as an exception does, so that nothing unfinished stays behind."""
+    """While active, SIGTERM and SIGHUP end the command as an exception does: nothing unfinished stays behind."""
 
     def end(signum, frame):
         say_error(f"stopped by {NAMES[signum]}")
