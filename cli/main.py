@@ -40,6 +40,7 @@ Exit codes:
   7    the file is of a newer goniosim
   8    the result cannot be used for what was asked
   9    the operating system or an environment variable stands in the way
+  129  the terminal was closed (SIGHUP); what was gathered is in the output file
   130  stopped by Ctrl-C; what was gathered is in the output file
   143  stopped by SIGTERM; what was gathered is in the output file
 """

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: the first asks the simulation to stop, a second Ctrl-C ends it at once."""
+"""Ctrl-C, SIGTERM and a closed terminal: the first asks the simulation to stop, a second Ctrl-C ends it at once."""
 
 import contextlib
 import os
@@ -11,29 +11,42 @@ from .policy import say_error
 # `timeout` and some batch systems deliver one signal twice: to the process and to its group.
 SAME_SIGNAL = 0.3
 
-NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
+NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM", signal.SIGHUP: "SIGHUP"}
+
+
+def _handle_all(handler):
+    """Set one handler for all signals, and return those before; ``nohup`` remains what it promises."""
+    earlier = {signum: signal.getsignal(signum) for signum in NAMES}
+    if earlier[signal.SIGHUP] is signal.SIG_IGN:
+        del earlier[signal.SIGHUP]
+    for signum in earlier:
+        signal.signal(signum, handler)
+    return earlier
 
 
 @contextlib.contextmanager
 def tidied_up():
-    """While active, SIGTERM ends the command as an exception does, so that nothing unfinished stays behind."""
+    """While active, SIGTERM and SIGHUP end the command as an exception does: nothing unfinished stays behind."""
 
     def end(signum, frame):
         say_error(f"stopped by {NAMES[signum]}")
         raise SystemExit(128 + signum)
 
-    earlier = signal.signal(signal.SIGTERM, end)
+    interrupt = signal.getsignal(signal.SIGINT)
+    earlier = _handle_all(end)
+    signal.signal(signal.SIGINT, interrupt)
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, earlier)
+        for signum, handler in earlier.items():
+            signal.signal(signum, handler)
 
 
 @contextlib.contextmanager
 def undisturbed():
     """Let signals wait until some files have been moved: moments."""
     waiting = []
-    earlier = {signum: signal.signal(signum, lambda signum, _: waiting.append(signum)) for signum in NAMES}
+    earlier = _handle_all(lambda signum, _: waiting.append(signum))
     try:
         yield
     finally:
@@ -65,7 +78,7 @@ class StopSignals:
         self.signum = None
 
     def __enter__(self):
-        self._earlier = {signum: signal.signal(signum, self._handle) for signum in NAMES}
+        self._earlier = _handle_all(self._handle)
         return self
 
     def __exit__(self, *_):

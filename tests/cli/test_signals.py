@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM, in a process of its own."""
+"""Ctrl-C, SIGTERM and SIGHUP, in a process of its own."""
 
 import json
 import signal
@@ -29,7 +29,7 @@ def _wait_for(process, words):
         guard.cancel()
 
 
-@pytest.mark.parametrize(("signum", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(("signum", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_what_was_gathered_is_kept(start, folder, signum, code):
     process = start("simulate", "scene.yaml", "--rays", FOREVER)
     _wait_for(process, "% of 1e12 rays")
