@@ -131,7 +131,8 @@ def _look_at(planned):
         (path,) = others
         raise OutputError(f"{path}: holds the result of another scene; {_REMEDY}", details)
     if details:
-        raise OutputError(f"{len(others) + len(foreign)} files hold something else; {_REMEDY}", details)
+        remedy = f"{_REMEDY}, which leaves other files alone" if foreign else _REMEDY
+        raise OutputError(f"{len(others) + len(foreign)} files hold something else; {remedy}", details)
     return found
 
 

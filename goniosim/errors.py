@@ -84,7 +84,7 @@ class FewerRaysError(OutputError):
 
     def __init__(self, path: object, held: str, offered: str) -> None:
         self.fact = f"{path} stays as it is: it holds {held} rays per direction of this scene, the new result {offered}"
-        super().__init__(f"{self.fact}; choose another name, or overwrite=True")
+        super().__init__(f"{self.fact}; choose another name, or allow overwriting")
 
 
 class ResourceError(GoniosimError):

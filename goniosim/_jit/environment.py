@@ -5,6 +5,8 @@ A value that it cannot use makes numba fail, or go on with a warning over a scre
 
 import os
 import re
+import subprocess
+import sys
 import warnings
 
 from ..errors import RefusalError
@@ -34,6 +36,16 @@ def _check_readings(noted):
         warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 
 
+def _check_processor():
+    """Refuse a processor that LLVM does not know: it would end the process. Tried in another one, if one is named."""
+    for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"):
+        if os.environ.get(name):
+            trial = [sys.executable, "-c", "from numba import njit; njit(lambda x: x + 1)(1)"]
+            done = subprocess.run(trial, capture_output=True, check=False)
+            if done.returncode or b"not a recognized" in done.stderr:
+                _refuse(name, "numba cannot compile for this processor")
+
+
 _check_threads()
 with warnings.catch_warnings(record=True) as _noted:
     warnings.simplefilter("always")
@@ -42,6 +54,7 @@ with warnings.catch_warnings(record=True) as _noted:
     from numba import config, njit, types
     from numba.extending import intrinsic
 _check_readings(_noted)
+_check_processor()
 if config.DISABLE_JIT:
     _refuse("NUMBA_DISABLE_JIT", "goniosim has no use for uncompiled code")
 

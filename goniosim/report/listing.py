@@ -71,6 +71,8 @@ def description(entries):
     size = text.size(sum(entry["bytes"] for entry in results))
     number = f"{len(results)} result{'' if len(results) == 1 else 's'}"
     lines.append(f"  {number}, {size}" + (f"; {partial} partial, with fewer rays than asked for" if partial else ""))
+    if results:
+        lines.append("  From the headers alone; `goniosim info FILE` checks every byte.")
     lines += [f"  {entry['message']}" for entry in entries if entry["kind"] in ("models", "other")]
     return "\n".join(lines)
 

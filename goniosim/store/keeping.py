@@ -130,7 +130,7 @@ def check_replacement(path: StrPath, result: Result) -> None:
     if found.rays is None:
         raise OutputError(
             f"{path}: holds the result of another scene ({'; '.join(found.differences)}), so it is not overwritten; "
-            "choose another name, or overwrite=True"
+            "choose another name, or allow overwriting"
         )
     if (found.rays > result.rays).any():
         raise FewerRaysError(path, _most(found.rays), _most(result.rays))

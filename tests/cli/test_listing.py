@@ -61,7 +61,7 @@ def test_a_folder_is_a_table(goniosim, results):
         assert " 100 " in line
         assert "classic, 6 x 12" in line
         assert line.endswith("kB")
-    assert lines[-1].startswith("  3 results, ")
+    assert lines[-2].startswith("  3 results, ") and "headers alone" in lines[-1]
 
 
 def test_what_is_damaged_or_foreign_is_named(goniosim, results):

@@ -170,3 +170,10 @@ def test_settings_of_matplotlib_change_nothing(start, folder, monkeypatch):
         assert (process.returncode, err) == (0, ""), setting
         drawn.append([path.read_bytes() for path in sorted((folder / "figures").iterdir())])
     assert all(each == drawn[0] for each in drawn)
+
+
+def test_a_date_for_reproducible_builds_is_none_of_the_figures(goniosim, folder, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "abc")
+    write_result(make_result(rows=2, columns=4), folder / "r.h5")
+    code, _, err = goniosim("plot", "r.h5", "--theta", "60", "--format", "pdf")
+    assert (code, err) == (0, "") and os.environ["SOURCE_DATE_EPOCH"] == "abc"

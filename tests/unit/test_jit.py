@@ -88,7 +88,8 @@ def test_an_unwritable_home_falls_back(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "setting", ["NUMBA_NUM_THREADS=0", "NUMBA_NUM_THREADS=abc", "NUMBA_OPT=9", "NUMBA_DISABLE_JIT=1"]
+    "setting",
+    ["NUMBA_NUM_THREADS=0", "NUMBA_NUM_THREADS=abc", "NUMBA_OPT=9", "NUMBA_DISABLE_JIT=1", "NUMBA_CPU_NAME=foo"],
 )
 def test_what_numba_cannot_read_is_one_line(setting):
     name, _, value = setting.partition("=")

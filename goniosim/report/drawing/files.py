@@ -1,6 +1,7 @@
 """Figures as files: one look, one resolution, and the same bytes for the same figure."""
 
 import contextlib
+import os
 import re
 from pathlib import Path
 
@@ -38,6 +39,18 @@ _MARKS = {
 @contextlib.contextmanager
 def own_style():
     """While active, figures look as those of goniosim do, whatever the user's settings say."""
+    # Figures have no date; matplotlib reads the variable all the same, and fails on what is no number.
+    date = os.environ.pop("SOURCE_DATE_EPOCH", None)
+    try:
+        with _own_settings():
+            yield
+    finally:
+        if date is not None:
+            os.environ["SOURCE_DATE_EPOCH"] = date
+
+
+@contextlib.contextmanager
+def _own_settings():
     with rc_context():
         rcdefaults()
         rcParams.update(STYLE)
