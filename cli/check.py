@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, Count, set_option
+from .options import PATH, overrides_of, rays_option, set_option, threads_option
 from .policy import debug_option
 
 
@@ -18,8 +18,8 @@ from .policy import debug_option
     metavar="OUT",
     help="See also whether OUT, the result file or the folder of a study, can be written and has room on its disk.",
 )
-@click.option("--rays", type=Count(), metavar="N", help="Rays per incident direction, such as 1e7.")
-@click.option("--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default.")
+@rays_option
+@threads_option
 @set_option
 @click.option("--json", "as_json", is_flag=True, help="For programs: seconds, bytes and effects as JSON.")
 @debug_option
@@ -34,16 +34,14 @@ def check(config, output, rays, threads, overrides, as_json):
               goniosim check quickstart.yaml --rays 1e8 --json
     """  # noqa: D301
     from goniosim.report.simulation import forecast
-    from goniosim.scene import Override, load_config
+    from goniosim.scene import load_config
 
     from . import jobs
 
-    given = {name: value for name, value in (("rays", rays), ("threads", threads)) if value is not None}
-    options = [Override(f"simulation.{name}={value}", f"--{name} {value}") for name, value in given.items()]
-    described = load_config(config, [*overrides, *options])
+    described = load_config(config, [*overrides, *overrides_of(rays=rays, threads=threads)])
     scenes, many = described.scenes, described.study is not None
     if output:
-        jobs.require_room(scenes, Path(output), many)
+        jobs.require_room(jobs.plan(scenes, output, folder=Path(output) if many else None))
     made = forecast.forecasts(scenes)
     if as_json:
         answer = forecast.study_as_dict(described.study, scenes, made) if many else forecast.as_dict(*scenes, *made)

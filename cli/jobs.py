@@ -29,7 +29,7 @@ class Job:
     @property
     def rays(self):
         """Rays of all incident directions together."""
-        return len(self.scene.incident.theta_deg) * self.scene.simulation.rays
+        return self.scene.total_rays
 
     def is_finished(self, standing):
         """Whether a `goniosim.store.Standing`, if there is one, holds all rays that are asked for."""
@@ -57,19 +57,11 @@ def plan(scenes, output, folder):
     Returns
     -------
     list of Job
-
-    Raises
-    ------
-    OutputError
-        If there is no folder for the files.
     """
     if folder is None:
         (scene,) = scenes
-        planned = [Job(scene, Path(output or f"{scene.material.name}.h5"))]
-    else:
-        planned = [Job(scene, folder / f"{scene.material.name}.h5") for scene in scenes]
-    make_folder(planned[0].path.parent)
-    return planned
+        return [Job(scene, Path(output or f"{scene.material.name}.h5"))]
+    return [Job(scene, folder / f"{scene.material.name}.h5") for scene in scenes]
 
 
 def sort_out(planned, overwrite, note):
@@ -90,10 +82,12 @@ def sort_out(planned, overwrite, note):
     Raises
     ------
     OutputError
-        Something stands in the way: all files at once, with what each of them differs in.
+        There is no folder for the files, or something stands in the way: all files at once, with what each of them
+        differs in.
     """
     from goniosim.store import refuse_newer, reserve_output
 
+    make_folder(planned[0].path.parent)
     remove_dead(Path(os.path.realpath(job.path)) for job in planned)
     found = {} if overwrite else _look_at(planned)
     for standing in found.values():
@@ -151,16 +145,12 @@ def _kept(kept, planned):
     return f"{len(kept)} of {planned} materials {what}: skipped (their files hold {held} rays per direction)"
 
 
-def require_room(scenes, output, many):
+def require_room(planned):
     """Make sure that the results could be written, and leave nothing behind.
 
     Parameters
     ----------
-    scenes : list of Scene
-    output : Path
-        Result file, or folder of the results of a study.
-    many : bool
-        Whether it is a study.
+    planned : list of Job
 
     Raises
     ------
@@ -170,17 +160,17 @@ def require_room(scenes, output, many):
     from goniosim.report.simulation.forecast import file_size
     from goniosim.store import reserve_output
 
-    paths = [output / f"{scene.material.name}.h5" for scene in scenes] if many else [output]
+    paths = [job.path for job in planned]
     folder = paths[0].parent
     if folder.exists():
-        _look_at([Job(scene, path) for scene, path in zip(scenes, paths, strict=True)])
+        _look_at(planned)
     else:
         # It will be made: then the room is where it will stand.
         standing = next(parent for parent in folder.absolute().parents if parent.exists())
         paths = [standing / path.name for path in paths[:1]]
     for path in paths[1:]:
         reserve_output(path, 0).release()
-    reserve_output(paths[0], sum(map(file_size, scenes))).release()
+    reserve_output(paths[0], sum(file_size(job.scene) for job in planned)).release()
 
 
 def run(jobs, progress, signals, verbose, overwrite=False):

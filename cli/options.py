@@ -83,6 +83,18 @@ def _overrides(ctx, param, values):
     return [Override(value, f"--set {value}") for value in values]
 
 
+def overrides_of(**given):
+    """Changes of the scene for options that stand for values under ``simulation``; None is no change."""
+    from goniosim.scene import Override
+
+    asked = {name: value for name, value in given.items() if value is not None}
+    return [Override(f"simulation.{name}={value}", f"--{name} {value}") for name, value in asked.items()]
+
+
+rays_option = click.option("--rays", type=Count(), metavar="N", help="Rays per incident direction, such as 1e7.")
+threads_option = click.option(
+    "--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default."
+)
 set_option = click.option(
     "--set",
     "overrides",

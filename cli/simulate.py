@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, Count, set_option
+from .options import PATH, Count, overrides_of, rays_option, set_option, threads_option
 from .policy import debug_option, say
 from .signals import StopSignals
 
@@ -19,9 +19,9 @@ from .signals import StopSignals
     metavar="OUT",
     help="Result file, or the folder of a study's files [default: the name of the material or study].",
 )
-@click.option("--rays", type=Count(), metavar="N", help="Rays per incident direction, such as 1e7.")
+@rays_option
 @click.option("--seed", type=Count(), metavar="S", help="Seed of the random numbers.")
-@click.option("--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default.")
+@threads_option
 @set_option
 @click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays, without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
@@ -46,13 +46,11 @@ def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, qui
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation import study
     from goniosim.report.simulation.summary import summary
-    from goniosim.scene import Override, load_config
+    from goniosim.scene import load_config
 
     from . import jobs
 
-    given = {name: value for name, value in (("rays", rays), ("seed", seed), ("threads", threads)) if value is not None}
-    options = [Override(f"simulation.{name}={value}", f"--{name} {value}") for name, value in given.items()]
-    described = load_config(config, [*overrides, *options])
+    described = load_config(config, [*overrides, *overrides_of(rays=rays, seed=seed, threads=threads)])
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
     notes = []

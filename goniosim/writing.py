@@ -3,7 +3,6 @@
 import contextlib
 import errno
 import os
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -46,11 +45,6 @@ def printable(text: object, most: int = 0) -> str:
     shown = str(text)
     cut = f"{shown[:most]}..." if 0 < most < len(shown) else shown
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in cut)
-
-
-def file_name(name: str) -> str:
-    """A name from data as a part of a file name: it leads to no other folder, and no shell trips over it."""
-    return re.sub(r"[^A-Za-z0-9._+=,-]", "_", name).lstrip(".")[:200] or "_"
 
 
 def make_folder(folder: StrPath) -> None:

@@ -38,12 +38,12 @@ def _check_readings(noted):
 
 def _check_processor():
     """Refuse a processor that LLVM does not know: it would end the process. Tried in another one, if one is named."""
-    for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"):
-        if os.environ.get(name):
-            trial = [sys.executable, "-c", "from numba import njit; njit(lambda x: x + 1)(1)"]
-            done = subprocess.run(trial, capture_output=True, check=False)
-            if done.returncode or b"not a recognized" in done.stderr:
-                _refuse(name, "numba cannot compile for this processor")
+    named = [name for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES") if os.environ.get(name)]
+    if named:
+        trial = [sys.executable, "-c", "from numba import njit; njit(lambda x: x + 1)(1)"]
+        done = subprocess.run(trial, capture_output=True, check=False)
+        if done.returncode or b"not a recognized" in done.stderr:
+            _refuse(named[0], "numba cannot compile for this processor")
 
 
 _check_threads()

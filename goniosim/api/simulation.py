@@ -66,7 +66,7 @@ def simulate(
     """
     scene = with_arguments(as_scene(scene), {"rays": rays, "seed": seed, "threads": threads})
     check_stop(stop)
-    with progress_of(progress, rays_of(scene)) as shown, Stop(stop) as asked:
+    with progress_of(progress, scene.total_rays) as shown, Stop(stop) as asked:
         try:
             return trace(scene, scene.material.name, shown, asked)
         except StoppedError:
@@ -90,11 +90,6 @@ def trace(scene: Scene, label: str, shown: Any, asked: Stop) -> Result:
 
     result: Result = engine.simulate(scene, progress=report, stop=asked)
     return result
-
-
-def rays_of(scene: Scene) -> int:
-    """Rays of all incident directions together."""
-    return len(scene.incident.theta_deg) * scene.simulation.rays
 
 
 def check_stop(stop: object) -> None:

@@ -13,7 +13,7 @@ from ..scene import Scene, Source, as_scenes, with_arguments
 from ..store import look_at, reserve_output, write_result
 from ..writing import StrPath, make_folder
 from .progress import Progress, progress_of
-from .simulation import check_stop, rays_of, trace
+from .simulation import check_stop, trace
 from .stopping import Stop
 
 Study = Iterable[Scene] | Source
@@ -128,7 +128,7 @@ def _run(
     stop: threading.Event | None,
 ) -> None:
     """Add ``one(scene, label, shown, asked)`` of each scene to what is kept, until somebody asks to stop."""
-    with progress_of(progress, sum(map(rays_of, scenes))) as shown, Stop(stop) as asked:
+    with progress_of(progress, sum(scene.total_rays for scene in scenes)) as shown, Stop(stop) as asked:
         asked.gathering = bool(kept)
         for number, scene in enumerate(scenes, 1):
             name = scene.material.name

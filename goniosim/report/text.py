@@ -5,6 +5,7 @@ from collections import Counter
 
 import numpy as np
 
+from ..scene.quantity import count
 from ..writing import printable
 
 # Characters of a value from a file.
@@ -43,16 +44,6 @@ def with_error(value, stderr, decimals=5):
         scale, shown = 10.0**-power, power - exponent
         return f"({value * scale:.{shown}f} ± {stderr * scale:.{shown}f})e{power}"
     return f"{value:.{shown}f} ± {stderr:.{shown}f}"
-
-
-def count(number):
-    """Format a number of rays: ``16000000`` as ``1.6e7``, ``1234567`` as ``1.235e6``."""
-    number = float(number)
-    if number < 1e4:
-        return f"{number:.0f}"
-    mantissa, exponent = f"{number:.3e}".split("e")
-    mantissa = mantissa.rstrip("0").rstrip(".")
-    return f"{mantissa}e{int(exponent)}"
 
 
 def counts(rays):

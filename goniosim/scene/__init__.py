@@ -1,6 +1,7 @@
 """What the user describes: typed, checked, and read from YAML with the line of every mistake."""
 
 from goniosim.scene.arguments import with_arguments
+from goniosim.scene.components import components
 from goniosim.scene.differences import differences
 from goniosim.scene.effects import Effect, absent_interfaces, distinct_channels, effects
 from goniosim.scene.example import example
@@ -26,6 +27,7 @@ __all__ = [
     "absent_interfaces",
     "as_scene",
     "as_scenes",
+    "components",
     "differences",
     "distinct_channels",
     "effects",

@@ -10,7 +10,7 @@ from pydantic import Field, field_validator, model_validator
 from ruamel.yaml import YAML
 
 from goniosim.scene.layers import Interface, Layer, Part
-from goniosim.scene.quantity import Checked, Number, check_each, mistake, mistakes
+from goniosim.scene.quantity import Checked, Number, check_each, count, mistake, mistakes
 from goniosim.scene.structure import structure_mistakes
 
 MAX_CELLS = 4_000_000
@@ -176,17 +176,21 @@ class Scene(Part):
     def __repr__(self) -> str:
         layers = [layer.interface.type if layer.interface else "medium" for layer in self.material.layers]
         angles = [f"{theta:.10g}" for theta in self.incident.theta_deg]
-        rays = f"{self.simulation.rays:.4g}".replace("e+0", "e").replace("e+", "e")
         parts = [
             ", ".join(layers) if len(layers) <= MOST_SHOWN else f"{len(layers)} layers",
             f"theta_deg {', '.join(angles)}" if len(angles) <= MOST_SHOWN else f"{len(angles)} directions",
             f"{self.slice.parametrization} slices of {self.slice.rows} x {self.slice.columns} cells",
-            f"{rays} rays",
+            f"{count(self.simulation.rays)} rays",
             f"seed {self.simulation.seed}",
         ]
         return f"<Scene {self.material.name}: {'; '.join(parts)}>"
 
     __str__ = __repr__
+
+    @property
+    def total_rays(self) -> int:
+        """Rays of all incident directions together."""
+        return len(self.incident.theta_deg) * self.simulation.rays
 
     def to_yaml(self) -> str:
         """Write the scene as YAML, complete with its defaults.

@@ -227,3 +227,13 @@ def looks_numeric(text: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def count(number: float) -> str:
+    """Format a number of rays: ``16000000`` as ``1.6e7``, ``1234567`` as ``1.235e6``."""
+    number = float(number)
+    if number < 1e4:
+        return f"{number:.0f}"
+    mantissa, exponent = f"{number:.3e}".split("e")
+    mantissa = mantissa.rstrip("0").rstrip(".")
+    return f"{mantissa}e{int(exponent)}"

@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from goniosim.result import Result
-from goniosim.store.layout import SCALES, Dataset, describe
+from goniosim.store.layout import SCALES, Dataset, angles_of, describe
 from goniosim.store.writer import arrays, components_of, root_attributes
 
 if TYPE_CHECKING:
     import xarray
-
-# Beside every dataset with an axis of directions, as in a file.
-ANGLES = ("theta_deg", "phi_deg")
 
 
 def to_datatree(result: Result) -> xarray.DataTree:
@@ -47,11 +44,10 @@ def to_datatree(result: Result) -> xarray.DataTree:
     coordinates: dict[str, dict[str, Any]] = {}
     for path, variable in variables.items():
         group, _, name = path.rpartition("/")
-        scales = {dim: SCALES[dim] for dim in describe(path).dims}
-        if "direction" in scales and group not in ("", "incident"):
-            scales |= {angle: f"incident/{angle}" for angle in ANGLES}
+        entry = describe(path)
+        scales = {dim: SCALES[dim] for dim in entry.dims} | angles_of(path, entry)
         coordinates.setdefault(group, {}).update({each: variables[scale] for each, scale in scales.items()})
-        if not describe(path).is_scale:
+        if not entry.is_scale:
             groups.setdefault(group, {})[name] = variable
     return DataTree.from_dict(
         {f"/{group}": Group(data, coordinates.get(group), attributes.get(group)) for group, data in groups.items()}

@@ -8,7 +8,7 @@ import numpy as np
 
 from goniosim.store import manifest, seal
 from goniosim.store.access import chunk_shape
-from goniosim.store.layout import CHECKSUMS, SCALES, Dataset
+from goniosim.store.layout import CHECKSUMS, SCALES, Dataset, angles_of
 
 # Any HDF5 since 1.10 (2016) can read this format, and the bytes do not depend on the installed one.
 FORMAT = ("v110", "v110")
@@ -86,11 +86,10 @@ def _write_meaning(dataset: h5py.Dataset, entry: Dataset) -> None:
 
 def _link_coordinates(root: h5py.Group, path: str, dataset: h5py.Dataset, entry: Dataset) -> None:
     """Hard links to the coordinates of a dataset beside it, where xarray looks for them."""
-    coordinates = {dim: SCALES[dim] for dim in entry.dims}
-    if "direction" in entry.dims and not path.startswith("incident/"):
-        coordinates |= {name: f"incident/{name}" for name in ("theta_deg", "phi_deg")}
-        write_text(dataset, "coordinates", "theta_deg phi_deg")
-    for name, target in coordinates.items():
+    angles = angles_of(path, entry)
+    if angles:
+        write_text(dataset, "coordinates", " ".join(angles))
+    for name, target in ({dim: SCALES[dim] for dim in entry.dims} | angles).items():
         if name not in dataset.parent:
             dataset.parent[name] = root[target]
 

@@ -18,6 +18,7 @@ from goniosim.errors import (
 from goniosim.result import Result
 from goniosim.scene import Scene, differences, parse_scene
 from goniosim.scene.model import MAX_DIRECTIONS
+from goniosim.scene.quantity import count
 from goniosim.store import access
 from goniosim.store.kinds import RESULT
 from goniosim.store.opening import decoding, opened
@@ -133,7 +134,7 @@ def check_replacement(path: StrPath, result: Result) -> None:
             "choose another name, or allow overwriting"
         )
     if (found.rays > result.rays).any():
-        raise FewerRaysError(path, _most(found.rays), _most(result.rays))
+        raise FewerRaysError(path, count(found.rays.max()), count(result.rays.max()))
 
 
 def _differences(there: str, asked: Scene | None) -> tuple[str, ...]:
@@ -168,7 +169,3 @@ def _rays(path: StrPath) -> np.ndarray:
 
 def _newer(error: NewerSchemaError) -> OutputError:
     return OutputError(f"{error}; the file is not overwritten")
-
-
-def _most(rays: np.ndarray) -> str:
-    return f"{rays.max():.4g}".replace("e+0", "e").replace("e+", "e")

@@ -228,6 +228,13 @@ def _pattern(path: str) -> re.Pattern[str]:
 _PATTERNS = [(_pattern(dataset.path), dataset) for dataset in DATASETS]
 
 
+def angles_of(path: str, entry: Dataset) -> dict[str, str]:
+    """Names and paths of the angles that stand beside a dataset with an axis of directions, as its coordinates."""
+    if "direction" not in entry.dims or entry.is_scale or path.startswith("incident/"):
+        return {}
+    return {name: f"incident/{name}" for name in ("theta_deg", "phi_deg")}
+
+
 def describe(path: str) -> Dataset:
     """Find the row of the table that describes a dataset.
 

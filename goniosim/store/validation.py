@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from goniosim.errors import ConfigError
-from goniosim.scene import CHANNELS, Scene, optical_stack, parse_scene
+from goniosim.scene import CHANNELS, Scene, components, parse_scene
 from goniosim.scene.model import FileName
 
 # Each checkpoint comes after twice the work of the one before; a merged run may have more of them.
@@ -141,7 +141,7 @@ RESULT = (
     Rule(
         "reflection and transmission",
         "be there as the scene calls for them",
-        lambda result, scene: components_of(scene) <= result.components.keys(),
+        lambda result, scene: set(components(scene)) <= result.components.keys(),
     ),
     Rule(
         "COMPONENT/order_N",
@@ -211,16 +211,6 @@ def sizes_of(scene: Scene) -> dict[str, int]:
         "row_edges": rows + 1,
         "column_edges": columns + 1,
     }
-
-
-def components_of(scene: Scene) -> set[str]:
-    """The components that a scene calls for at least."""
-    found = {"reflection/direct"}
-    if len(optical_stack(scene.material).material.interfaces) > 1:
-        found.add("reflection/internal")
-    if scene.material.transmits:
-        found.add("transmission")
-    return found
 
 
 def _orders_of(component: str, scene: Scene) -> set[str]:

@@ -1,5 +1,7 @@
 """No two figures share a file, and no two directions a title; figures replace figures of goniosim only."""
 
+import os
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -115,3 +117,10 @@ def test_figures_replace_figures_of_goniosim_only(tmp_path, monkeypatch, suffix)
         figures.draw(make_result(), tmp_path, "x", suffix=suffix)
     # Seen before anything was drawn.
     assert {**before, **{each: each.read_bytes() for each in tmp_path.iterdir()}} == before and not path.exists()
+
+
+@pytest.mark.parametrize("name", ["../../evil", "/abs/x", "..", ".hidden", "", "a\0b", "a\nb", "x" * 900, "a b;c"])
+def test_a_name_from_data_is_one_harmless_file_name(name):
+    (made,) = distinct([name])
+    assert os.path.basename(made) == made and made[0] != "." and len(made) <= 200 and made.isprintable()
+    assert distinct(["belcour18_forward-jacobian=snell,n=2"]) == ["belcour18_forward-jacobian=snell,n=2"]

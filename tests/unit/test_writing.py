@@ -6,7 +6,7 @@ import os
 import pytest
 
 from goniosim.errors import OutputError
-from goniosim.writing import file_name, make_folder, printable, replacing, write_text
+from goniosim.writing import make_folder, printable, replacing, write_text
 
 
 def test_a_file_appears_whole_and_leaves_nothing_beside_it(tmp_path):
@@ -67,10 +67,3 @@ def test_a_link_stays_a_link_and_long_names_fit(tmp_path):
 def test_a_terminal_shows_and_does_not_obey():
     assert printable("\x1b[2J\x9b1m\x7f\n\t\u202e\udce9 µ 漆") == "\\x1b[2J\\x9b1m\\x7f\\n\\t\\u202e\\udce9 µ 漆"
     assert printable("a" * 300, most=200) == "a" * 200 + "..." and printable("abc", most=3) == "abc"
-
-
-@pytest.mark.parametrize("name", ["../../evil", "/abs/x", "..", ".hidden", "", "a\0b", "a\nb", "x" * 900, "a b;c"])
-def test_a_name_from_data_is_one_harmless_file_name(name):
-    made = file_name(name)
-    assert os.path.basename(made) == made and made[0] != "." and len(made) <= 200 and made.isprintable()
-    assert file_name("belcour18_forward-jacobian=snell,n=2") == "belcour18_forward-jacobian=snell,n=2"

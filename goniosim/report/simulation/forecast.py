@@ -56,21 +56,9 @@ class Forecast:
         return self.directions * self.rays / self.rays_per_second
 
 
-def components(scene):
-    """Names of the components that a scene can have, by the effects it calls for."""
-    from goniosim.scene import effects
-
-    active = {effect.name for effect in effects(scene) if effect.active}
-    names = ["reflection/direct"]
-    if "internal_paths" in active:
-        names.append("reflection/internal")
-    if "transmission" in active:
-        names.append("transmission")
-    return names
-
-
 def file_size(scene):
     """Upper estimate of the size of the result file of a scene, in bytes."""
+    from goniosim.scene import components
     from goniosim.store import predicted_size
 
     names = components(scene)
