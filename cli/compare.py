@@ -67,7 +67,7 @@ def compare(results, models, output, settings, subcells, figures, allow_partial,
 
     request = check_request(_names(models), _options(settings))
     paths, passed_over = result_files(results)
-    materials = compare_report.check_headers(paths, allow_partial)
+    materials = compare_report.check_headers(paths, allow_partial, request, figures)
     folder = Path(output or f"{Path(results).resolve().stem}-comparison")
 
     def report_on(message):

@@ -68,9 +68,12 @@ def plot(file, output, suffix, theta, materials, models):
 
 
 def _draw_result(file, folder, stem, options):
+    from goniosim.report.memory import memory_to_plot, require_memory
     from goniosim.report.simulation.figures import draw
-    from goniosim.store import open_result
+    from goniosim.store import open_result, read_scene
 
+    needed = memory_to_plot(read_scene(file), overview=options["theta_deg"] is None)
+    require_memory(file, needed, "use a machine with more memory, or simulate fewer incident directions per file")
     return draw(open_result(file), folder, stem, **options)
 
 

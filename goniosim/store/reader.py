@@ -7,6 +7,7 @@ from typing import Any
 import h5py
 
 from goniosim.result import AUDIT_ENTRIES, Audit, Component, Cost, Result
+from goniosim.scene import Scene
 from goniosim.store import access, validation
 from goniosim.store.decoding import cells, shaped, values
 from goniosim.store.kinds import RESULT
@@ -77,6 +78,28 @@ def read_header(path: StrPath) -> dict[str, str | int]:
     """
     with opened(path, RESULT, whole=False) as (file, ours), decoding(path, RESULT.remedy):
         return _header(file, ours)
+
+
+def read_scene(path: StrPath) -> Scene:
+    """Read the scene of a result file, without its data.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    goniosim.scene.Scene
+
+    Raises
+    ------
+    ForeignFileError, DamagedFileError, NewerSchemaError, UnusableResultError
+        As `open_result`.
+    """
+    with opened(path, RESULT, whole=False) as (file, ours), decoding(path, RESULT.remedy):
+        header = _header(file, ours)
+        with written_by(str(header["schema_version"]), path, RESULT):
+            return validation.scene_of(str(header["config_yaml"]))
 
 
 def _header(file: h5py.File, ours: Ours) -> dict[str, str | int]:

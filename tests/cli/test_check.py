@@ -57,7 +57,7 @@ def test_memory_stands_beside_time_and_size(folder, goniosim):
     _, out, _ = goniosim("check", "scene.yaml", "--threads", 1)
     assert "MB on 1 thread: " in out and "Warning" not in out
     _, out, _ = goniosim("check", "study.yaml")
-    assert "memory" in out.splitlines()[1] and "at a time" in out.splitlines()[-1]
+    assert "memory" in out.splitlines()[1] and "at a time" in out.splitlines()[-2]
 
 
 def test_what_does_not_fit_here_is_said_and_predicted_all_the_same(folder, goniosim, small_machine):

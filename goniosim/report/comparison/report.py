@@ -6,7 +6,8 @@ from ...compare.summary import summarise
 from ...cores import available_cores
 from ...errors import UnusableResultError
 from ...integration import Pool
-from ...store import ModelsWriter, open_result, read_header
+from ...store import ModelsWriter, open_result, read_header, read_scene
+from .. import memory
 from ..drawing.files import write_figure
 from ..drawing.names import distinct
 from ..drawing.studio import Studio
@@ -16,13 +17,15 @@ from .folder import FIGURES, MODELS, ReportFolder
 from .ranking import ranking
 
 
-def check_headers(paths, allow_partial):
-    """Make sure, before anything is computed, that all files can be compared.
+def check_headers(paths, allow_partial, request, figures="all"):
+    """Make sure, before anything is computed, that all files can be compared, and that there is memory for it.
 
     Parameters
     ----------
     paths : list of Path
     allow_partial : bool
+    request, figures
+        As for `Report`.
 
     Returns
     -------
@@ -35,6 +38,7 @@ def check_headers(paths, allow_partial):
         A partial result, or two of the same name.
     ForeignFileError, DamagedFileError, NewerSchemaError
         A file is not a result that can be read.
+    ResourceError
     """
     names = {}
     for path in paths:
@@ -50,7 +54,15 @@ def check_headers(paths, allow_partial):
                 "rename one of them and simulate it anew"
             )
         names[name] = path
+        scene = read_scene(path)
+        memory.require_memory(path, memory.memory_to_compare(scene, request, figures), _remedy(request, figures))
     return list(names)
+
+
+def _remedy(request, figures):
+    fewer = ["name fewer models (--models)"] if len(request) > 1 else []
+    fewer += ["draw fewer figures (--figures none)"] if figures != "none" else []
+    return ", ".join([*fewer, "or simulate fewer incident directions per file"]).removeprefix("or ")
 
 
 class Report:

@@ -31,6 +31,8 @@ class Forecast:
         Upper estimate of what is held in memory.
     shortage : str or None
         What is missing if that is more than is free here.
+    memory_to_plot, memory_to_compare : int
+        Upper estimates of what the reports on the result take, `compare` with all models.
     probe_rays : int
         Rays of the probe, all directions together.
     lost_event_cap : float
@@ -47,6 +49,8 @@ class Forecast:
     threads: int
     memory: object
     shortage: str | None
+    memory_to_plot: int
+    memory_to_compare: int
     probe_rays: int
     lost_event_cap: float
 
@@ -87,6 +91,7 @@ def forecasts(scenes):
     list of Forecast
     """
     from goniosim.engine import memory_needed, probe, shortage, threads_of
+    from goniosim.report.memory import memory_to_compare, memory_to_plot
 
     made = []
     for scene in scenes:
@@ -106,6 +111,8 @@ def forecasts(scenes):
                 threads=threads_of(scene),
                 memory=memory_needed(scene),
                 shortage=short,
+                memory_to_plot=memory_to_plot(scene),
+                memory_to_compare=memory_to_compare(scene),
                 probe_rays=measured.rays,
                 lost_event_cap=measured.lost_event_cap,
             )
@@ -148,6 +155,8 @@ def cost_text(made):
             f"  file size   at most {text.size(one.n_bytes)}",
             f"  memory      at most {text.size(one.memory.peak)} on {text.counted(one.threads, 'thread')}: "
             + ", ".join(f"{name} {text.size(n_bytes)}" for name, n_bytes in _largest(one.memory)),
+            f"  report      at most {text.size(one.memory_to_plot)} of memory for plot, "
+            f"{text.size(one.memory_to_compare)} for compare with all models",
         ]
     else:
         header = ["material", "rays", "speed", "time", "file at most", "memory"]
@@ -163,12 +172,13 @@ def cost_text(made):
             for one in made
         ]
         seconds, n_bytes = sum(one.seconds for one in made), sum(one.n_bytes for one in made)
-        peak = max(one.memory.peak for one in made)
+        peak, compared = (max(one.memory.peak for one in made), max(one.memory_to_compare for one in made))
         lines = [
             f"{len(made)} materials, all valid; speeds from short probes",
             *text.table(header, rows),
             f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)} on disk and, at a time, "
-            f"{text.size(peak)} of memory.",
+            f"{text.size(peak)} of memory;",
+            f"  compare with all models takes at most {text.size(compared)} of memory.",
         ]
     lines += [_event_cap(one) for one in made if one.lost_event_cap >= NOTEWORTHY_CAP]
     lines += [f"  Warning: memory: {one.name} does not fit here: {one.shortage}" for one in made if one.shortage]
@@ -219,6 +229,7 @@ def as_dict(scene, one):
         "memory_bytes": one.memory.peak,
         "memory": asdict(one.memory),
         "memory_shortage": one.shortage,
+        "report_memory_bytes": {"plot": one.memory_to_plot, "compare": one.memory_to_compare},
         "effects": {effect.name: {"active": effect.active, "why": effect.why} for effect in effects(scene)},
         "absent_interfaces": absent_interfaces(scene),
         "probe_rays": one.probe_rays,
@@ -234,6 +245,9 @@ def study_as_dict(name, scenes, made):
         "name": name,
         **totals,
         "memory_bytes": max(each["memory_bytes"] for each in materials),
+        "report_memory_bytes": {
+            report: max(each["report_memory_bytes"][report] for each in materials) for report in ("plot", "compare")
+        },
         "materials": materials,
     }
 
