@@ -83,6 +83,11 @@ class Plan:
         return int(self.slots[:, 1].sum())
 
     @property
+    def width(self):
+        """Columns that tell all: light at phi = 0 on isotropic layers makes column K - 1 - j equal to column j."""
+        return self.columns if self.columns % 2 else self.columns // 2
+
+    @property
     def parametrization(self):
         """Number of the parametrization in compiled code."""
         return PARAMETRIZATIONS[self.parametrization_name][0]
