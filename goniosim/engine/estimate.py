@@ -47,15 +47,14 @@ def to_bsdf(energy, geometry):
     return np.divide(energy, geometry.projected_solid_angle, out=np.zeros_like(energy), where=valid)
 
 
-def _assemble(plan, slices, sampled, contains_delta):
-    """A `Component` from energy, stderr and hits (None if not sampled) per direction on the distinct channels.
+def assemble(plan, slices, contains_delta):
+    """A `Component` from energy, stderr and hits (None if not counted) per direction on the distinct channels.
 
     ``slices`` may be a generator: of fine slices, only those of one direction are in memory besides the result.
     """
     shape = (len(plan.theta_deg), len(plan.position), plan.rows, plan.columns)
     found = Component(
         *(np.empty(shape) for _ in range(4)),
-        hits=np.empty((shape[0], *shape[2:]), np.int64) if sampled else None,
         contains_delta=contains_delta,
     )
     for m, (energy, stderr, hits) in enumerate(slices):
@@ -63,62 +62,15 @@ def _assemble(plan, slices, sampled, contains_delta):
         found.stderr[m] = stderr[plan.position]
         found.bsdf[m] = to_bsdf(energy, plan.geometry[m])[plan.position]
         found.bsdf_stderr[m] = to_bsdf(stderr, plan.geometry[m])[plan.position]
-        if sampled:
+        if hits is not None:
+            found.hits = np.zeros((shape[0], *shape[2:]), np.int64) if found.hits is None else found.hits
             found.hits[m] = hits
     return found
 
 
-def _sampled(plan, tallies, rays, first, count, contains_delta):
-    def slices():
-        for tally, n in zip(tallies, rays, strict=True):
-            total, squares, hits = moments(tally.histogram, plan, first, count)
-            yield *mean_and_error(total, squares, n), hits
-
-    return _assemble(plan, slices(), True, contains_delta)
-
-
-def components(plan, tallies, rays, direct):
-    """All components of the result.
-
-    Parameters
-    ----------
-    plan : Plan
-    tallies : list of Tally
-        One for each direction.
-    rays : list of int
-        Rays traced from each direction.
-    direct : list of (ndarray, ndarray)
-        What `direct.direct_reflection` yields for each direction.
-
-    Returns
-    -------
-    dict of str to goniosim.result.Component
-    """
-    found = {"reflection/direct": _assemble(plan, ((*pair, None) for pair in direct), False, bool(plan.mirrors[0]))}
-    for side, name in COMPONENT_OF.items():
-        first, count, lowest = (int(value) for value in plan.slots[side])
-        if count == 0:
-            continue
-        delta = plan.has_specular_chain(side)
-        found[name] = _sampled(plan, tallies, rays, first, count, delta)
-        if plan.orders:
-            for i in range(count):
-                order = f"order_{lowest + i}" + ("_and_more" if i == count - 1 else "")
-                found[name].orders[order] = _sampled(plan, tallies, rays, first + i, 1, delta)
-    return found
-
-
-def noise(plan, tallies, rays, side):
-    """Noise floor of a component: see `goniosim.result.Cost.error`."""
-    first, count, _ = (int(value) for value in plan.slots[side])
-    # A channel that stands for several counts as often.
-    weights = np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
-    total = np.zeros(plan.n_distinct)
-    for tally, n, geometry in zip(tallies, rays, plan.geometry, strict=True):
-        stderr = mean_and_error(*moments(tally.histogram, plan, first, count)[:2], n)[1]
-        variance = to_bsdf(stderr, geometry) ** 2 * geometry.projected_solid_angle
-        total += variance.sum(axis=(1, 2))
-    return float(np.sqrt(total / len(plan.theta_deg)) @ weights)
+def channel_weights(plan):
+    """Share of each distinct channel in a mean over the channels: one that stands for several counts as often."""
+    return np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
 
 
 def audit(plan, ledgers, part_rays, direct):

@@ -1,7 +1,7 @@
 """A scene lowered to the flat tables that the compiled engine reads: only what the scene calls for."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -86,6 +86,10 @@ class Plan:
     def width(self):
         """Columns that tell all: light at phi = 0 on isotropic layers makes column K - 1 - j equal to column j."""
         return self.columns if self.columns % 2 else self.columns // 2
+
+    def in_one_cell(self):
+        """The same rays, all of whose exits share one cell: for what does not look at slices."""
+        return replace(self, rows=1, columns=1, orders=0, slots=_slots(len(self.kinds), self.slots[DOWN, 1] > 0, 0))
 
     @property
     def parametrization(self):

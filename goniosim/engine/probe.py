@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cores import granted_threads
+from .estimators import ESTIMATORS
+from .estimators.choose import choose
 from .faint import faint_weights
 from .layout import LOST_CAP
 from .memory import threads_of
@@ -25,11 +27,31 @@ def warm_up(scene):
     Parameters
     ----------
     scene : goniosim.scene.Scene or Plan
+        Of a plan, only those of the analog walk.
     """
-    plan = scene if isinstance(scene, Plan) else make_plan(scene)
     start = time.perf_counter()
+    plan = scene if isinstance(scene, Plan) else make_plan(scene)
     Workspace(plan).run(0, 1, unit_key(0, 0, 0), Tally(plan), threading.Event())
+    if plan is not scene:
+        for choice in choose(plan, getattr(scene.simulation, "estimator", "auto"), scene.simulation.rays):
+            _warm_up_replicates(plan, choice)
     return time.perf_counter() - start
+
+
+_warm = set()
+
+
+def _warm_up_replicates(plan, choice):
+    """Make a replicate of two paths, once for what kernels differ in."""
+    kind = (choice.estimator, choice.sides, plan.n_distinct, plan.kinds.tobytes(), plan.parametrization, plan.orders > 0)
+    if choice.estimator not in ESTIMATORS or kind in _warm:
+        return
+    _warm.add(kind)
+    estimator = ESTIMATORS[choice.estimator](plan, choice.sides)
+    estimator.prepare()
+    slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
+    out = np.empty((1, slots, plan.n_distinct, plan.rows, plan.width))
+    estimator.workspace().run(0, 2, np.zeros(1, np.uint64), out, threading.Event())
 
 
 @dataclass(frozen=True)

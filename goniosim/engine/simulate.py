@@ -1,9 +1,6 @@
-"""The driver: work units on threads, their tallies summed in a fixed order, results assembled."""
+"""The driver: estimators chosen, their runs done, results assembled."""
 
 import threading
-import time
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
-from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,19 +8,19 @@ from ..cores import granted_threads
 from ..errors import ResourceError, StoppedError
 from ..integration import Pool
 from ..provenance import provenance
-from ..result import Cost, Result
+from ..result import Result
 from ..scene import CHANNELS, effects, with_arguments
-from . import estimate
+from . import assembly, estimate
+from .analog import AnalogRun
 from .direct import direct_reflection
-from .faint import faint_weights
-from .layout import DOWN, UP
+from .drive import Drive
+from .estimators.choose import choose
 from .memory import require_memory, threads_of
 from .plan import make_plan
 from .probe import warm_up
-from .schedule import MOST_LEDGERS, Schedule, units_in_flight
-from .unit import Tally, Workspace, unit_key
 
-_POLL_SECONDS = 0.1
+# Rays of the analog run that tells the energy balance where slices come from replicates.
+AUDIT_RAYS = 1 << 18
 
 
 def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):
@@ -66,28 +63,52 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
 
 
 def _simulate(scene, plan, threads, progress, stop):
-    run = _Run(plan, scene.simulation.rays, scene.simulation.seed, threads)
-    warm_up(plan)
     stop = stop or threading.Event()
+    simulation = scene.simulation
+    choices = choose(plan, getattr(simulation, "estimator", "auto"), simulation.rays)
+    warm_up(scene)
     direct = _integrate_direct(plan, threads, stop)
-    run.trace(progress or (lambda done, total: None), stop)
-    if not any(run.rays):
+    runs = [choice.start(plan, simulation.seed) for choice in choices]
+    own_audit = next((run for run in runs if run.audits), None)
+    audit = own_audit or AnalogRun(plan.in_one_cell(), simulation.seed)
+    audit_rays = 0 if own_audit else min(simulation.rays, AUDIT_RAYS)
+    total_rays = len(plan.theta_deg) * (len(runs) * simulation.rays + audit_rays)
+    drive = Drive(threads, stop, progress or (lambda done, total: None), total_rays)
+
+    def note(run, direction):
+        run.spending.note(direction, run.rays[direction], assembly.errors(plan, run, direction))
+
+    if own_audit is None:
+        audit.prepare()
+        drive.shoot(audit, audit_rays)
+    limit = Limit(simulation.max_rays, simulation.max_time)
+    left = set()
+    for run in runs:
+        run.prepare()
+        if simulation.target is None:
+            drive.shoot(run, simulation.rays, note)
+        else:
+            all_directions = range(len(plan.theta_deg))
+            met = partial(assembly.reached, plan, target=simulation.target)
+            left |= set(drive.reach(run, all_directions, met, limit, note))
+    rays = np.min([run.rays for run in runs], axis=0)
+    if not any(rays):
         raise StoppedError("stopped before the first rays were through: there is nothing to keep")
-    found = estimate.components(plan, run.tallies, run.rays, direct)
+    found = assembly.components(plan, runs, direct)
     return Result(
         config_yaml=scene.to_yaml(),
         config_hash=scene.config_hash(),
         name=scene.material.name,
-        status="complete" if run.finished else "partial",
-        seed=scene.simulation.seed,
+        status="complete" if all(run.finished for run in runs) else "partial",
+        seed=simulation.seed,
         theta_deg=plan.theta_deg,
         phi_deg=np.zeros_like(plan.theta_deg),
-        rays=np.array(run.rays, dtype=np.int64),
+        rays=rays.astype(np.int64),
         channels=list(CHANNELS),
         cells=estimate.cells(plan),
         components=found,
-        audit=estimate.audit(plan, run.ledgers, run.part_rays, found["reflection/direct"]),
-        cost=run.cost(),
+        audit=estimate.audit(plan, audit.ledgers, audit.part_rays, found["reflection/direct"]),
+        cost=assembly.cost(plan, runs, drive.seconds),
         effects={effect.name: effect.active for effect in effects(scene)},
         provenance=provenance(threads),
     )
@@ -97,125 +118,3 @@ def _integrate_direct(plan, threads, stop):
     """`direct_reflection` of every direction; before tracing, so that a stop need not wait for it."""
     with Pool(threads) as pool:
         return [direct_reflection(plan, direction, pool, stop) for direction in range(len(plan.theta_deg))]
-
-
-def _added_in_pairs(values):
-    return [a + b for a, b in zip(values[::2], values[1::2], strict=True)]
-
-
-@dataclass
-class _Run:
-    plan: object
-    rays_per_direction: int
-    seed: int
-    threads: int
-    tallies: list = field(init=False)
-    checkpoints: list = field(default_factory=list)
-    cpu_seconds: float = 0.0
-    seconds: float = 0.0
-    events: int = 0
-    traced: int = 0
-
-    def __post_init__(self):
-        directions = len(self.plan.theta_deg)
-        self.schedule = Schedule(directions, self.rays_per_direction)
-        self.tallies = [Tally(self.plan) for _ in range(directions)]
-        self.units = [0] * directions
-        self.ledgers = [[] for _ in range(directions)]
-        self.part_rays = [[] for _ in range(directions)]
-
-    @property
-    def rays(self):
-        return [sum(sizes) for sizes in self.part_rays]
-
-    @property
-    def finished(self):
-        return all(units == self.schedule.rounds for units in self.units)
-
-    def trace(self, progress, stop):
-        """Run all work units, summing their tallies in the order of the schedule."""
-        start, cpu_start = time.perf_counter(), time.thread_time()
-        faint = faint_weights(self.plan)
-        self.cpu_seconds += time.thread_time() - cpu_start
-        in_flight = units_in_flight(self.schedule, self.threads)
-        spare = [Tally(self.plan) for _ in range(in_flight)]
-        local = threading.local()
-        pending = {}
-        done = {}
-        submitted = reduced = 0
-        total_rays = len(self.plan.theta_deg) * self.rays_per_direction
-        checkpoints = set(self.schedule.checkpoints)
-
-        def work(number, tally):
-            direction, unit, rays = self.schedule[number]
-            if stop.is_set():
-                return None
-            if not hasattr(local, "workspace"):
-                local.workspace = Workspace(self.plan, faint)
-            key = unit_key(self.seed, direction, unit)
-            return local.workspace.run(direction, rays, key, tally, stop)
-
-        with ThreadPoolExecutor(self.threads) as pool:
-            try:
-                while reduced < len(self.schedule):
-                    while spare and submitted < len(self.schedule) and not stop.is_set():
-                        tally = spare.pop()
-                        pending[pool.submit(work, submitted, tally)] = (submitted, tally)
-                        submitted += 1
-                    if not pending:
-                        break
-                    finished, _ = wait(pending, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)
-                    for future in finished:
-                        number, tally = pending.pop(future)
-                        done[number] = (future.result(), tally)
-                    while reduced in done:
-                        report, tally = done.pop(reduced)
-                        self._reduce(reduced, report, tally)
-                        tally.clear()
-                        spare.append(tally)
-                        reduced += 1
-                        self.seconds = time.perf_counter() - start
-                        round_, rest = divmod(reduced, len(self.plan.theta_deg))
-                        if rest == 0 and round_ in checkpoints and not stop.is_set():
-                            self._checkpoint()
-                    progress(self.traced, total_rays)
-            except BaseException:
-                stop.set()
-                raise
-        if not self.finished:
-            self._checkpoint()
-
-    def _reduce(self, number, report, tally):
-        direction, unit, _ = self.schedule[number]
-        # After a stop, units of a direction count only as far as none is missing before them.
-        if report is None or unit != self.units[direction]:
-            return
-        self.units[direction] += 1
-        self.tallies[direction].histogram += tally.histogram
-        self.ledgers[direction].extend(tally.ledgers.copy())
-        self.part_rays[direction].extend(report.part_rays)
-        if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
-            self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
-            self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
-        self.traced += report.rays
-        self.cpu_seconds += report.cpu_seconds
-        self.events += report.events
-
-    def _checkpoint(self):
-        rays = self.rays
-        error = {
-            name: estimate.noise(self.plan, self.tallies, rays, side)
-            for side, name in estimate.COMPONENT_OF.items()
-            if self.plan.slots[side, 1] > 0
-        }
-        self.checkpoints.append((float(np.mean(rays)), self.seconds, self.cpu_seconds, error))
-
-    def cost(self):
-        names = [estimate.COMPONENT_OF[side] for side in (UP, DOWN) if self.plan.slots[side, 1] > 0]
-        rays, seconds, cpu_seconds, errors = zip(*self.checkpoints, strict=True)
-        return Cost(
-            rays=np.array(rays),
-            seconds=np.array(seconds),
-            cpu_seconds=np.array(cpu_seconds),
-            error={name: np.array([error[name] for error in errors]) for name in names},
-        )

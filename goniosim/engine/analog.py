@@ -1,0 +1,160 @@
+"""The analog estimator: every ray is a path of its own that leaves once, and tells its own error."""
+
+import time
+
+import numpy as np
+
+from . import estimate
+from .faint import faint_weights
+from .runs import Spending, Work
+from .schedule import MOST_LEDGERS, Schedule
+from .unit import Tally, Workspace, unit_key
+
+# Rays of a direction in the first round of a run that stops at an accuracy.
+FIRST_ROUND = 1 << 17
+
+
+class AnalogRun:
+    """Slices and energy balances of all ways out.
+
+    Parameters
+    ----------
+    plan : goniosim.engine.plan.Plan
+    key : int or uint64
+        Seed of the random numbers.
+    sides : tuple of int
+        Ways out that it is asked for.
+
+    Attributes
+    ----------
+    tallies : list of goniosim.engine.unit.Tally
+        Of each direction, over the work units that are through.
+    ledgers, part_rays : list of list
+        Energy balances of the parts of the work units of each direction, and their rays.
+    spending : goniosim.engine.runs.Spending
+    """
+
+    name = "analog"
+    # Its rays are followed to their ends, so that it tells where all energy went.
+    audits = True
+
+    def __init__(self, plan, key, sides=()):
+        directions = len(plan.theta_deg)
+        self.sides = sides
+        self._plan, self._key = plan, key
+        self._faint = None
+        self.tallies = [Tally(plan) for _ in range(directions)]
+        self._units = [0] * directions
+        self._issued = [0] * directions
+        self.ledgers = [[] for _ in range(directions)]
+        self.part_rays = [[] for _ in range(directions)]
+        self.spending = Spending(directions)
+
+    @property
+    def rays(self):
+        """Rays that are through, of each direction."""
+        return [sum(sizes) for sizes in self.part_rays]
+
+    @property
+    def finished(self):
+        """Whether all rays are through that were handed out."""
+        return self._units == self._issued
+
+    def prepare(self):
+        """Look up what is faint."""
+        start = time.thread_time()
+        self._faint = faint_weights(self._plan)
+        self.spending.share(time.thread_time() - start)
+
+    def works(self, rays, directions=None):
+        """Work units of so many further rays of each of some directions.
+
+        Parameters
+        ----------
+        rays : int
+        directions : list of int, optional
+            All by default.
+
+        Returns
+        -------
+        list of Work
+        """
+        chosen = range(len(self.tallies)) if directions is None else directions
+        schedule = Schedule(len(chosen), rays)
+        checkpoints = set(schedule.checkpoints)
+        made = []
+        for direction, unit, share in map(schedule.__getitem__, range(len(schedule))):
+            m = chosen[direction]
+            made.append(Work(m, self._issued[m], share, last=unit + 1 in checkpoints))
+            self._issued[m] += 1
+        return made
+
+    def rays_of_round(self, number):
+        """Rays of a direction in a round of a run that stops at an accuracy: each doubles what there is."""
+        return FIRST_ROUND << max(0, number - 1)
+
+    def round(self, number, directions):
+        """Work units of such a round."""
+        return self.works(self.rays_of_round(number), directions)
+
+    def buffer(self):
+        """What a piece of work fills."""
+        return Tally(self._plan)
+
+    def workspace(self):
+        """Scratch arrays of one thread."""
+        return Workspace(self._plan, self._faint)
+
+    def work(self, work, tally, workspace, stop):
+        """Trace a work unit into a tally; returns its report, None if it was given up."""
+        key = unit_key(self._key, work.direction, work.number)
+        return workspace.run(work.direction, work.rays, key, tally, stop)
+
+    def reduce(self, work, report, tally):
+        """Add up a work unit."""
+        direction = work.direction
+        # After a stop, units of a direction count only as far as none is missing before them.
+        if report is not None and work.number == self._units[direction]:
+            self._units[direction] += 1
+            self.tallies[direction].histogram += tally.histogram
+            self.ledgers[direction].extend(tally.ledgers.copy())
+            self.part_rays[direction].extend(report.part_rays)
+            if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
+                self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
+                self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
+            self.spending.book(direction, report.events, report.cpu_seconds)
+        tally.clear()
+
+    def finish_round(self, direction):
+        """Nothing is left to do at a checkpoint."""
+
+    def slices(self, side, direction, order=None):
+        """Energy, standard error and effective number of paths on the distinct channels, and hits.
+
+        Parameters
+        ----------
+        side, direction : int
+        order : int, optional
+            Number of the slot among those of the way out; all by default.
+        """
+        first, count, _ = (int(value) for value in self._plan.slots[side])
+        first, count = (first, count) if order is None else (first + order, 1)
+        total, squares, hits = estimate.moments(self.tallies[direction].histogram, self._plan, first, count)
+        energy, stderr = estimate.mean_and_error(total, squares, self.rays[direction])
+        number = np.divide(total**2, squares, out=np.zeros_like(total), where=squares > 0.0)
+        return energy, stderr, number, hits
+
+    def total(self, side, direction, order=None):
+        """Energy of all cells, and its standard error; on the distinct channels.
+
+        A path leaves once, so that two cells have the covariance - E_i E_j / (rays - 1).
+        """
+        energy, stderr, _, _ = self.slices(side, direction, order)
+        value = energy.sum(axis=(1, 2))
+        squares = (energy**2).sum(axis=(1, 2))
+        less = (value**2 - squares) / max(self.rays[direction] - 1, 1)
+        return value, np.sqrt(np.maximum((stderr**2).sum(axis=(1, 2)) - less, 0.0))
+
+
+def _added_in_pairs(values):
+    return [a + b for a, b in zip(values[::2], values[1::2], strict=True)]

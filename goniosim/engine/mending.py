@@ -1,0 +1,5 @@
+"""Placeholder until the split walk brings it."""
+
+
+def mended(mean, variance):
+    return variance

@@ -1,0 +1,164 @@
+"""A run of replicates: rounds of equally many, each twice as large as before."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from .replicates import Replicates
+from .rounds import REPLICATES as N_REPLICATES
+from .rounds import SMALLEST, chunks, sizes
+from .runs import Spending, Work
+from .unit import child_key
+
+# Child of the seed's key, beside the work units' and the pilot's.
+BRANCH = 2
+
+
+@dataclass(frozen=True)
+class _Report:
+    events: int
+    cpu_seconds: float
+
+
+class ReplicatedRun:
+    """Slices of some ways out by one estimator.
+
+    Parameters
+    ----------
+    plan : goniosim.engine.plan.Plan
+    estimator : object
+        See `goniosim.engine.estimators`.
+    key : int or uint64
+        Seed of the random numbers.
+
+    Attributes
+    ----------
+    spending : goniosim.engine.runs.Spending
+    """
+
+    audits = False
+
+    def __init__(self, plan, estimator, key):
+        self.sides = estimator.sides
+        self.name = estimator.name
+        self._plan, self._estimator = plan, estimator
+        self._key = child_key(key, BRANCH)
+        self._shape = (plan.n_distinct, plan.rows, plan.width)
+        self._views, self._place = _views(plan, self.sides)
+        directions = len(plan.theta_deg)
+        self._sums = [
+            Replicates(self._views, self._shape, plan.columns, estimator.mends) for _ in range(directions)
+        ]
+        self._issued = [0] * directions
+        self._rounds = 0
+        self.spending = Spending(directions)
+
+    @property
+    def finished(self):
+        """Whether all light paths are through that were handed out."""
+        return self.rays == self._issued
+
+    @property
+    def rays(self):
+        """Light paths in finished rounds, of each direction."""
+        return [sums.paths for sums in self._sums]
+
+    def prepare(self):
+        """Make what all directions share."""
+        start = time.thread_time()
+        self._estimator.prepare()
+        self.spending.share(time.thread_time() - start)
+
+    def works(self, rays):
+        """Pieces of work of so many light paths of each direction, or a few more."""
+        made = []
+        for size in sizes(rays):
+            made += self._round(size, range(len(self._sums)))
+        return made
+
+    def rays_of_round(self, number):
+        """Light paths of a direction in a round of a run that stops at an accuracy."""
+        return N_REPLICATES * SMALLEST << number
+
+    def round(self, number, directions):
+        """Pieces of work of such a round."""
+        return self._round(SMALLEST << number, directions)
+
+    def _round(self, size, directions):
+        pieces = chunks(self._estimator.chunk)
+        number = self._rounds
+        self._rounds += 1
+        for m in directions:
+            self._issued[m] += size * N_REPLICATES
+        # All directions advance together.
+        return [
+            Work(m, number, size * len(piece), piece, last=piece is pieces[-1]) for piece in pieces for m in directions
+        ]
+
+    def buffer(self):
+        """What a piece of work fills."""
+        return np.empty((self._estimator.chunk, self._slots, *self._shape))
+
+    @property
+    def _slots(self):
+        return int(sum(self._plan.slots[side, 1] for side in self.sides))
+
+    def workspace(self):
+        """Scratch arrays of one thread."""
+        return self._estimator.workspace()
+
+    def work(self, work, buffer, workspace, stop):
+        """Make replicates; returns a report, None if they were given up."""
+        start = time.thread_time()
+        keys = [self._key_of(work, number) for number in work.replicates]
+        out = buffer[: len(keys)]
+        events = workspace.run(work.direction, work.rays // len(keys), np.array(keys, np.uint64), out, stop)
+        return None if events is None else _Report(events, time.thread_time() - start)
+
+    def _key_of(self, work, number):
+        return child_key(child_key(child_key(self._key, work.direction), work.number), number)
+
+    def reduce(self, work, report, buffer):
+        """Add up replicates."""
+        if report is None:
+            return
+        start = time.thread_time()
+        size = work.rays // len(work.replicates)
+        for number, slots in zip(work.replicates, buffer, strict=False):
+            self._sums[work.direction].add(number, size, slots)
+        self.spending.book(work.direction, report.events, report.cpu_seconds + time.thread_time() - start)
+
+    def finish_round(self, direction):
+        """Add a round up, or what there is of it."""
+        self._sums[direction].finish_round()
+
+    def slices(self, side, direction, order=None):
+        """Energy, standard error and effective number of replicates on the distinct channels; no hits.
+
+        Parameters
+        ----------
+        side, direction : int
+        order : int, optional
+            Number of the slot among those of the way out; all by default.
+        """
+        return *self._sums[direction].slices(self._place[side, order]), None
+
+    def total(self, side, direction, order=None):
+        """Energy of all cells, and its standard error; on the distinct channels."""
+        return self._sums[direction].total(self._place[side, order])
+
+
+def _views(plan, sides):
+    """Slots of the components and of their orders, and the place of each among them by way out and order."""
+    views, place, first = [], {}, 0
+    for side in sides:
+        count = int(plan.slots[side, 1])
+        place[side, None] = len(views)
+        views.append(slice(first, first + count))
+        for order in range(count):
+            place[side, order] = len(views) if plan.orders else place[side, None]
+            if plan.orders:
+                views.append(slice(first + order, first + order + 1))
+        first += count
+    return views, place

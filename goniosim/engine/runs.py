@@ -1,0 +1,64 @@
+"""What all runs of an estimator share: their pieces of work, and what they have cost so far."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Work:
+    """A piece of work of one incident direction.
+
+    Attributes
+    ----------
+    direction : int
+    number : int
+        Of the work unit, or of the round.
+    rays : int
+        Light paths of the piece.
+    replicates : range or None
+        Numbers of the replicates.
+    last : bool
+        Whether a checkpoint of the direction follows.
+    """
+
+    direction: int
+    number: int
+    rays: int
+    replicates: range | None = None
+    last: bool = False
+
+
+class Spending:
+    """What each direction has cost, and its checkpoints.
+
+    Parameters
+    ----------
+    directions : int
+    """
+
+    def __init__(self, directions):
+        self.events = np.zeros(directions, np.int64)
+        self.cpu_seconds = np.zeros(directions)
+        self.checkpoints = [[] for _ in range(directions)]
+
+    def share(self, cpu_seconds):
+        """Book what all directions share."""
+        self.cpu_seconds += cpu_seconds / len(self.cpu_seconds)
+
+    def book(self, direction, events, cpu_seconds):
+        """Book a piece of work."""
+        self.events[direction] += events
+        self.cpu_seconds[direction] += cpu_seconds
+
+    def note(self, direction, rays, errors):
+        """Note a checkpoint.
+
+        Parameters
+        ----------
+        direction : int
+        rays : int
+        errors : dict of str to float
+            Noise of each component, in sr^-1/2.
+        """
+        self.checkpoints[direction].append((rays, self.cpu_seconds[direction], errors))
