@@ -9,9 +9,12 @@ from dataclasses import dataclass, replace
 from ..cores import available_cores
 from ..errors import ResourceError
 from ..free_memory import free_memory, resident_memory
+from .drive import WAITING
+from .estimators import ESTIMATORS
+from .estimators.choose import ANALOG, choose
 from .layout import DOWN, N_LEDGER, N_SCRATCH, UP, WEIGHT
 from .plan import make_plan
-from .schedule import MOST_LEDGERS, Schedule, units_in_flight
+from .schedule import AUDIT_RAYS, MOST_LEDGERS, Schedule
 from .tally import record_length
 from .unit import BATCH, PARTS, queue_capacity
 
@@ -22,6 +25,8 @@ _NUMBER = 8
 _PROGRAM = 300_000_000
 # Of a thread, besides its arrays.
 _THREAD = 1_000_000
+# Of each direction, as many as no limit on time or memory lets through.
+_MANY_RAYS = 10**12
 # Python's objects around a ledger.
 _LEDGER = 200
 # Size of a file, relative to the arrays in it; while it is made, it exists twice.
@@ -54,6 +59,8 @@ class Memory:
         The file while it is written.
     scratch : int
         What passes by while tallies become slices.
+    estimators : int
+        What all directions share of estimators other than analog, such as the kernels of operators.
     """
 
     program: int
@@ -66,12 +73,13 @@ class Memory:
     result: int
     file: int
     scratch: int
+    estimators: int
 
     @property
     def phases(self):
         """Names of what is held at the same time, for every phase."""
         held = ("program", "cells", "direct", "tallies", "audit", "scratch")
-        return (*held, "threads", "queues"), (*held, "result"), ("program", "result", "file")
+        return (*held, "threads", "queues", "estimators"), (*held, "result"), ("program", "result", "file")
 
     @property
     def peak(self):
@@ -97,7 +105,7 @@ def memory_needed(scene):
     Memory
         An upper estimate: all cells are taken to be hit.
     """
-    return _needed(make_plan(scene), scene.simulation.rays, threads_of(scene))
+    return _needed(make_plan(scene), scene.simulation, threads_of(scene))
 
 
 def threads_of(scene):
@@ -105,33 +113,70 @@ def threads_of(scene):
     return scene.simulation.threads or available_cores()
 
 
-def _needed(plan, rays, threads):
+def _needed(plan, simulation, threads):
+    choices = choose(plan, simulation.estimator, simulation.rays)
+    # What stops at an accuracy may go on for long: its ledgers are as many as they get.
+    rays = simulation.rays or _MANY_RAYS
+    analog = any(choice.estimator == ANALOG for choice in choices)
+    walked, walked_rays = (plan, rays) if analog else (plan.in_one_cell(), min(rays, AUDIT_RAYS))
+    parts = _of_result(plan) | _of_walk(walked, walked_rays, threads) | {"estimators": 0}
+    for choice in choices:
+        if choice.estimator != ANALOG:
+            for name, n_bytes in _of_replicates(plan, choice, threads).items():
+                parts[name] += n_bytes
+    return Memory(**parts)
+
+
+def _of_result(plan):
     directions, distinct, channels = len(plan.theta_deg), plan.n_distinct, len(plan.position)
     cells = plan.rows * plan.columns
-    record = record_length(distinct)
-    tally = plan.n_slots * cells * record * _NUMBER
-    schedule = Schedule(directions, rays)
-    threads = min(threads, len(schedule))
-    ledgers = min(PARTS * schedule.rounds, 2 * MOST_LEDGERS)
     # A slice for each way out, and one for each order.
     counts = [int(plan.slots[side, 1]) for side in (UP, DOWN)]
     sampled = sum((1 + count if plan.orders else 1) for count in counts if count)
     slices = (1 + sampled) * 4 * channels + sampled
     # Two numbers and a flag.
     geometry = 2 * _NUMBER + 1
-    return Memory(
-        program=_PROGRAM,
-        cells=directions * cells * geometry,
-        direct=directions * 2 * distinct * cells * _NUMBER,
-        tallies=directions * tally,
-        threads=units_in_flight(schedule, threads) * tally + threads * _THREAD,
-        queues=threads * _queues(plan) + 2 * directions * _thresholds(plan),
+    return {
+        "program": _PROGRAM,
+        "cells": directions * cells * geometry,
+        "direct": directions * 2 * distinct * cells * _NUMBER,
+        "result": directions * cells * (slices * _NUMBER + geometry),
+        "file": int(_WRITTEN * directions * cells * (slices * _NUMBER + geometry)),
+    }
+
+
+def _of_walk(plan, rays, threads):
+    directions, distinct = len(plan.theta_deg), plan.n_distinct
+    cells = plan.rows * plan.columns
+    record = record_length(distinct)
+    tally = plan.n_slots * cells * record * _NUMBER
+    schedule = Schedule(directions, rays)
+    threads = min(threads, len(schedule))
+    ledgers = min(PARTS * schedule.rounds, 2 * MOST_LEDGERS)
+    return {
+        "tallies": directions * tally,
+        "threads": min(threads + WAITING, len(schedule)) * tally + threads * _THREAD,
+        "queues": threads * _queues(plan) + 2 * directions * _thresholds(plan),
         # The balance of one direction needs three copies of its ledgers.
-        audit=(directions + 3) * ledgers * (N_LEDGER * distinct * _NUMBER + _LEDGER),
-        result=directions * cells * (slices * _NUMBER + geometry),
-        file=int(_WRITTEN * directions * cells * (slices * _NUMBER + geometry)),
-        scratch=cells * (record + 8 * distinct) * _NUMBER,
-    )
+        "audit": (directions + 3) * ledgers * (N_LEDGER * distinct * _NUMBER + _LEDGER),
+        "scratch": cells * (record + 8 * distinct) * _NUMBER,
+    }
+
+
+def _of_replicates(plan, choice, threads):
+    """Sums of all directions, buffers of the replicates in flight, and what the estimator itself holds."""
+    estimator = ESTIMATORS[choice.estimator](plan, choice.sides)
+    shared, workspace = estimator.memory
+    slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
+    views = slots + (len(choice.sides) if plan.orders else 0)
+    replicate = plan.n_distinct * plan.rows * plan.width * _NUMBER
+    return {
+        # Mean and variance of what is finished, of the round at work, and the effective number.
+        "tallies": len(plan.theta_deg) * views * 5 * replicate,
+        "threads": (threads + WAITING) * estimator.chunk * slots * replicate + threads * workspace,
+        "scratch": 4 * views * replicate,
+        "estimators": shared,
+    }
 
 
 def _queues(plan):
@@ -180,13 +225,13 @@ def shortage(scene):
         return None
     # What this process holds already is part of the need.
     room = free[0] + resident_memory()
-    plan, rays, threads = make_plan(scene), scene.simulation.rays, threads_of(scene)
-    needed = _needed(plan, rays, threads)
+    plan, simulation, threads = make_plan(scene), scene.simulation, threads_of(scene)
+    needed = _needed(plan, simulation, threads)
     if needed.peak <= room:
         return None
     return (
         f"about {needed.peak / 1e9:.3g} GB are needed, most of them for {_PURPOSE[needed.largest]}, and "
-        f"{room / 1e9:.3g} GB can be had ({free[1]}); {_remedy(plan, rays, threads, room)}"
+        f"{room / 1e9:.3g} GB can be had ({free[1]}); {_remedy(plan, simulation, threads, room)}"
     )
 
 
@@ -200,18 +245,19 @@ _PURPOSE = {
     "result": "the result",
     "file": "the file while it is written",
     "scratch": "sums of tallies",
+    "estimators": "what the estimator prepares",
 }
 
 
-def _remedy(plan, rays, threads, room):
+def _remedy(plan, simulation, threads, room):
     """The smallest change that makes the simulation fit: of the threads, the directions or the cells."""
-    if fewer := _most(lambda n: _needed(plan, rays, n).peak <= room, threads - 1):
+    if fewer := _most(lambda n: _needed(plan, simulation, n).peak <= room, threads - 1):
         return f"{_counted(fewer, 'thread')} would fit (simulation.threads: {fewer})"
     also = "with 1 thread (simulation.threads), " if threads > 1 else ""
     orders = ", or fewer orders (simulation.orders)" if plan.orders else ""
 
     def fits(**changes):
-        return _needed(replace(plan, **changes), rays, 1).peak <= room
+        return _needed(replace(plan, **changes), simulation, 1).peak <= room
 
     if most := _most(lambda n: fits(theta_deg=plan.theta_deg[:n]), len(plan.theta_deg) - 1):
         return f"{also}{_counted(most, 'incident direction')} per file would fit{orders}"
@@ -219,7 +265,7 @@ def _remedy(plan, rays, threads, room):
         rows, columns = max(1, plan.rows >> halvings), max(1, plan.columns >> halvings)
         if fits(rows=rows, columns=columns):
             return f"{also}slices of {rows} x {columns} cells would fit (slice.rows, slice.columns){orders}"
-    if _needed(plan, rays, 1).largest == "queues":
+    if _needed(plan, simulation, 1).largest == "queues":
         return f"{also}give the stack fewer interfaces, or use a machine with more memory"
     return "close other programs, or use a machine with more memory"
 

@@ -8,6 +8,8 @@ FEWEST_UNITS = 16
 # Ledgers of a direction, of which the standard errors of the audit are made; from twice as many on, neighbours
 # are added up, so that a long run holds no more than a short one.
 MOST_LEDGERS = 2048
+# Rays of the analog run that tells the energy balance where slices come from replicates.
+AUDIT_RAYS = 1 << 18
 
 
 @dataclass(frozen=True)
@@ -43,8 +45,3 @@ class Schedule:
         """Rounds after which to note cost and error: 1, 2, 4, ... and the last."""
         rounds = [1 << i for i in range(self.rounds.bit_length()) if 1 << i < self.rounds]
         return [*rounds, self.rounds]
-
-
-def units_in_flight(schedule, threads):
-    """Work units that are traced, or wait for their turn to be added up, at the same time."""
-    return min(threads + 2, len(schedule))

@@ -1,6 +1,7 @@
 """The driver: estimators chosen, their runs done, results assembled."""
 
 import threading
+from functools import partial
 
 import numpy as np
 
@@ -13,14 +14,12 @@ from ..scene import CHANNELS, effects, with_arguments
 from . import assembly, estimate
 from .analog import AnalogRun
 from .direct import direct_reflection
-from .drive import Drive
+from .drive import Drive, Limit
 from .estimators.choose import choose
 from .memory import require_memory, threads_of
 from .plan import make_plan
 from .probe import warm_up
-
-# Rays of the analog run that tells the energy balance where slices come from replicates.
-AUDIT_RAYS = 1 << 18
+from .schedule import AUDIT_RAYS
 
 
 def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):

@@ -1,0 +1,129 @@
+"""Replicates against independent paths: the same means, errors that are right, the same bits on any threads."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from goniosim.engine import assembly
+from goniosim.engine.analog import AnalogRun
+from goniosim.engine.drive import Drive
+from goniosim.engine.layout import DOWN, UP
+from goniosim.engine.plan import make_plan
+from goniosim.engine.replicated import ReplicatedRun
+from plain import Plain
+from reference.scenes import dielectric, make_scene, medium
+
+SLAB = [dielectric(1.5, 0.3), medium([0.05, 0.1, 0.4]), dielectric(1.0, 0.2)]
+RAYS = 400_000
+# Cells with fewer effective replicates are not normally distributed.
+ENOUGH = 12
+
+
+def shot(run, threads=2, rays=RAYS, stop=None):
+    """The run, done."""
+    run.prepare()
+    drive = Drive(threads, stop or threading.Event(), lambda done, total: None, 1)
+    drive.shoot(run, rays, lambda run, m: run.spending.note(m, run.rays[m], assembly.errors(run._plan, run, m)))
+    return run
+
+
+def plan_of(columns, orders=None):
+    asked = {"orders": orders} if orders else {}
+    return make_plan(make_scene(SLAB, [0.0, 60.0], rows=9, columns=columns, **asked))
+
+
+# An odd number of columns has no halves.
+@pytest.fixture(scope="module", params=[(36, None), (37, 2)], ids=["folded", "odd, orders"])
+def pair(request):
+    """The same slab by independent paths and by replicates."""
+    plan = plan_of(*request.param)
+    return plan, shot(AnalogRun(plan, 1, (UP, DOWN))), shot(ReplicatedRun(plan, Plain(plan), 1))
+
+
+def views(plan):
+    orders = {UP: 2, DOWN: 3} if plan.orders else {UP: 0, DOWN: 0}
+    return [(side, order) for side in (UP, DOWN) for order in (None, *range(orders[side]))]
+
+
+def test_means_and_errors_agree(pair):
+    plan, analog, run = pair
+    for side, order in views(plan):
+        for m in range(2):
+            a, sigma_a, _, _ = analog.slices(side, m, order)
+            b, sigma_b, number, hits = run.slices(side, m, order)
+            assert hits is None
+            z = ((a - b) / np.sqrt(sigma_a**2 + sigma_b**2 + 1e-300))[number > ENOUGH]
+            # Three channels and two halves share paths. Four sigmas: one false alarm in 16,000.
+            assert np.sqrt((z**2).mean()) == pytest.approx(1.0, abs=4.0 / np.sqrt(2.0 * z.size / 6.0))
+            # Both halves tell of a cell.
+            assert (sigma_b**2).sum() == pytest.approx(0.5 * (sigma_a**2).sum(), rel=0.5)
+            (va, ea), (vb, eb) = (each.total(side, m, order) for each in (analog, run))
+            assert np.allclose(vb, b.sum(axis=(1, 2))) and (np.abs(va - vb) < 4.5 * np.hypot(ea, eb)).all()
+
+
+def test_orders_add_up(pair):
+    plan, _, run = pair
+    if plan.orders:
+        for side, count in ((UP, 2), (DOWN, 3)):
+            parts = sum(run.slices(side, 1, order)[0] for order in range(count))
+            assert np.allclose(parts, run.slices(side, 1)[0], rtol=1e-12, atol=0.0)
+
+
+def test_checkpoints_fall_on_rounds_and_errors_shrink(pair):
+    plan, analog, run = pair
+    cost = assembly.cost(plan, [run], 2.0)
+    assert cost.rays.shape == (2, 2) and cost.rays[0].tolist() == [run.rays[0] / 3, run.rays[0]]
+    assert cost.seconds[:, -1].sum() == pytest.approx(2.0) and (np.diff(cost.cpu_seconds) > 0.0).all()
+    assert all((np.diff(error) < 0.0).all() for error in cost.error.values())
+    assert set(cost.error) == {"reflection/internal", "transmission"}
+    assert (run.spending.events > run.rays).all() and analog.finished and run.finished
+
+
+@pytest.mark.parametrize("run_of", [lambda plan: AnalogRun(plan, 7, (UP, DOWN)), lambda p: ReplicatedRun(p, Plain(p), 7)])
+def test_the_same_bits_on_any_number_of_threads(run_of):
+    plan = plan_of(36)
+    one, *others = (shot(run_of(plan), threads, rays=50_000) for threads in (1, 2, 3))
+    for other in others:
+        for side in (UP, DOWN):
+            for m in range(2):
+                for a, b in zip(one.slices(side, m)[:3], other.slices(side, m)[:3], strict=True):
+                    assert np.array_equal(a, b)
+                assert np.array_equal(one.total(side, m), other.total(side, m))
+
+
+def test_components_that_run_apart_are_the_same():
+    plan = plan_of(36)
+    both = shot(ReplicatedRun(plan, Plain(plan), 7), rays=50_000)
+    for side in (UP, DOWN):
+        alone = shot(ReplicatedRun(plan, Plain(plan, (side,)), 7), rays=50_000)
+        assert alone.sides == (side,) and np.array_equal(alone.slices(side, 1)[0], both.slices(side, 1)[0])
+
+
+class Stopping(Plain):
+    """Sets the stop after so many calls."""
+
+    def __init__(self, plan, stop, calls):
+        super().__init__(plan)
+        self.stop, self.calls = stop, calls
+
+    def workspace(self):
+        space = super().workspace()
+        run = space.run
+
+        def counted(*arguments):
+            self.calls -= 1
+            if self.calls == 0:
+                self.stop.set()
+            return run(*arguments)
+
+        space.run = counted
+        return space
+
+
+def test_a_stop_keeps_whole_replicates():
+    plan, stop = plan_of(36), threading.Event()
+    run = shot(ReplicatedRun(plan, Stopping(plan, stop, 9), 1), threads=1, rays=50_000, stop=stop)
+    size = 50_016 // 32
+    assert not run.finished and 8 * size <= run.rays[0] < 50_000 and run.rays[0] % size == 0
+    assert len(run.spending.checkpoints[0]) == 1 and run.slices(DOWN, 0)[0].sum() > 0.3
