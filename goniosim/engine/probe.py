@@ -9,11 +9,12 @@ import numpy as np
 
 from ..cores import granted_threads
 from .estimators import ESTIMATORS
-from .estimators.choose import choose
+from .estimators.choose import ANALOG, choose
 from .faint import faint_weights
 from .layout import LOST_CAP
 from .memory import threads_of
 from .plan import Plan, make_plan
+from .trial import replicated_seconds
 from .unit import Tally, Workspace, unit_key
 
 # Rays between two looks at the clock: fewer where each of them meets many interfaces.
@@ -63,7 +64,7 @@ class Probe:
     rays_per_second : float
         Over all threads.
     events_per_ray : float
-        Mean number of interfaces a ray meets.
+        Mean number of interfaces a ray meets, or what costs as much.
     compile_seconds : float
         Time to compile the kernels or to load them from the cache.
     rays : int
@@ -83,7 +84,7 @@ def probe(scene, seconds=1.0):
     """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`."""
     plan = make_plan(scene)
     threads = granted_threads(threads_of(scene))
-    compile_seconds = warm_up(plan)
+    compile_seconds = warm_up(scene)
     directions = len(plan.theta_deg)
     faint = faint_weights(plan)
     unit_rays = max(1, min(_RAYS_PER_UNIT, _MOST_EVENTS // len(plan.kinds)))
@@ -111,9 +112,18 @@ def probe(scene, seconds=1.0):
         totals = list(pool.map(work, range(threads)))
     elapsed = time.perf_counter() - start
     rays, events, lost = (sum(total[i] for total in totals) for i in range(3))
+    rate, events_per_ray = rays.sum() / elapsed, events / rays.sum()
+    asked = scene.simulation.most_rays
+    choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
+    replicated = [replicated_seconds(plan, each, asked, threads) for each in choices if each.estimator != ANALOG]
+    if replicated:
+        whole = sum(each[0] for each in replicated)
+        if len(replicated) < len(choices):
+            whole += directions * asked / rate
+        rate, events_per_ray = directions * asked / whole, sum(each[1] for each in replicated)
     return Probe(
-        rays_per_second=rays.sum() / elapsed,
-        events_per_ray=events / rays.sum(),
+        rays_per_second=rate,
+        events_per_ray=events_per_ray,
         compile_seconds=compile_seconds,
         rays=int(rays.sum()),
         lost_event_cap=float((lost / np.maximum(rays, 1)[:, None]).max()),
