@@ -19,16 +19,23 @@ class Drive:
     stop : threading.Event
     progress : callable
         Called as ``progress(done_rays, total_rays)``.
-    total_rays : int
-        Over all runs and directions.
     """
 
-    def __init__(self, threads, stop, progress, total_rays):
+    def __init__(self, threads, stop, progress):
         self._threads, self._stop = threads, stop
-        self._progress, self._total_rays = progress, total_rays
+        self._progress, self._total_rays = progress, 0
         self._done = 0
         self.seconds = 0.0
         self._started = time.perf_counter()
+
+    @property
+    def stopped(self):
+        """Whether somebody asked to stop."""
+        return self._stop.is_set()
+
+    def expect(self, rays):
+        """So many rays are to come, over all runs and directions, besides those that are through."""
+        self._total_rays = self._done + rays
 
     def shoot(self, run, rays, note=None):
         """Do a run of so many rays from every direction.

@@ -44,7 +44,14 @@ _warm = set()
 
 def _warm_up_replicates(plan, choice):
     """Make a replicate of two paths, once for what kernels differ in."""
-    kind = (choice.estimator, choice.sides, plan.n_distinct, plan.kinds.tobytes(), plan.parametrization, plan.orders > 0)
+    kind = (
+        choice.estimator,
+        choice.sides,
+        plan.n_distinct,
+        plan.kinds.tobytes(),
+        plan.parametrization,
+        plan.orders > 0,
+    )
     if choice.estimator not in ESTIMATORS or kind in _warm:
         return
     _warm.add(kind)

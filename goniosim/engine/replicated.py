@@ -47,9 +47,7 @@ class ReplicatedRun:
         self._shape = (plan.n_distinct, plan.rows, plan.width)
         self._views, self._place = _views(plan, self.sides)
         directions = len(plan.theta_deg)
-        self._sums = [
-            Replicates(self._views, self._shape, plan.columns, estimator.mends) for _ in range(directions)
-        ]
+        self._sums = [Replicates(self._views, self._shape, plan.columns, estimator.mends) for _ in range(directions)]
         self._issued = [0] * directions
         self._rounds = 0
         self.spending = Spending(directions)

@@ -1,7 +1,6 @@
 """The driver: estimators chosen, their runs done, results assembled."""
 
 import threading
-from functools import partial
 
 import numpy as np
 
@@ -12,14 +11,12 @@ from ..provenance import provenance
 from ..result import Result
 from ..scene import CHANNELS, effects, with_arguments
 from . import assembly, estimate
-from .analog import AnalogRun
 from .direct import direct_reflection
-from .drive import Drive, Limit
-from .estimators.choose import choose
+from .drive import Drive
 from .memory import require_memory, threads_of
 from .plan import make_plan
 from .probe import warm_up
-from .schedule import AUDIT_RAYS
+from .session import Session
 
 
 def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):
@@ -63,53 +60,31 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
 
 def _simulate(scene, plan, threads, progress, stop):
     stop = stop or threading.Event()
-    simulation = scene.simulation
-    choices = choose(plan, getattr(simulation, "estimator", "auto"), simulation.rays)
     warm_up(scene)
     direct = _integrate_direct(plan, threads, stop)
-    runs = [choice.start(plan, simulation.seed) for choice in choices]
-    own_audit = next((run for run in runs if run.audits), None)
-    audit = own_audit or AnalogRun(plan.in_one_cell(), simulation.seed)
-    audit_rays = 0 if own_audit else min(simulation.rays, AUDIT_RAYS)
-    total_rays = len(plan.theta_deg) * (len(runs) * simulation.rays + audit_rays)
-    drive = Drive(threads, stop, progress or (lambda done, total: None), total_rays)
-
-    def note(run, direction):
-        run.spending.note(direction, run.rays[direction], assembly.errors(plan, run, direction))
-
-    if own_audit is None:
-        audit.prepare()
-        drive.shoot(audit, audit_rays)
-    limit = Limit(simulation.max_rays, simulation.max_time)
-    left = set()
-    for run in runs:
-        run.prepare()
-        if simulation.target is None:
-            drive.shoot(run, simulation.rays, note)
-        else:
-            all_directions = range(len(plan.theta_deg))
-            met = partial(assembly.reached, plan, target=simulation.target)
-            left |= set(drive.reach(run, all_directions, met, limit, note))
-    rays = np.min([run.rays for run in runs], axis=0)
-    if not any(rays):
+    drive = Drive(threads, stop, progress or (lambda done, total: None))
+    session = Session(plan, scene.simulation, drive)
+    session.run()
+    if not any(session.rays):
         raise StoppedError("stopped before the first rays were through: there is nothing to keep")
-    found = assembly.components(plan, runs, direct)
+    found = assembly.components(plan, session.runs, direct)
     return Result(
         config_yaml=scene.to_yaml(),
         config_hash=scene.config_hash(),
         name=scene.material.name,
-        status="complete" if all(run.finished for run in runs) else "partial",
-        seed=simulation.seed,
+        status="complete" if session.finished else "partial",
+        seed=scene.simulation.seed,
         theta_deg=plan.theta_deg,
         phi_deg=np.zeros_like(plan.theta_deg),
-        rays=rays.astype(np.int64),
+        rays=np.array(session.rays, dtype=np.int64),
         channels=list(CHANNELS),
         cells=estimate.cells(plan),
         components=found,
-        audit=estimate.audit(plan, audit.ledgers, audit.part_rays, found["reflection/direct"]),
-        cost=assembly.cost(plan, runs, drive.seconds),
+        audit=estimate.audit(plan, session.audit.ledgers, session.audit.part_rays, found["reflection/direct"]),
+        cost=assembly.cost(plan, session.runs, drive.seconds),
         effects={effect.name: effect.active for effect in effects(scene)},
-        provenance=provenance(threads),
+        provenance={**provenance(threads), "estimator_choice": session.reasons},
+        target_reached=session.reached,
     )
 
 

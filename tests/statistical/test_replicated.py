@@ -23,7 +23,7 @@ ENOUGH = 12
 def shot(run, threads=2, rays=RAYS, stop=None):
     """The run, done."""
     run.prepare()
-    drive = Drive(threads, stop or threading.Event(), lambda done, total: None, 1)
+    drive = Drive(threads, stop or threading.Event(), lambda done, total: None)
     drive.shoot(run, rays, lambda run, m: run.spending.note(m, run.rays[m], assembly.errors(run._plan, run, m)))
     return run
 
@@ -80,7 +80,9 @@ def test_checkpoints_fall_on_rounds_and_errors_shrink(pair):
     assert (run.spending.events > run.rays).all() and analog.finished and run.finished
 
 
-@pytest.mark.parametrize("run_of", [lambda plan: AnalogRun(plan, 7, (UP, DOWN)), lambda p: ReplicatedRun(p, Plain(p), 7)])
+@pytest.mark.parametrize(
+    "run_of", [lambda plan: AnalogRun(plan, 7, (UP, DOWN)), lambda p: ReplicatedRun(p, Plain(p), 7)]
+)
 def test_the_same_bits_on_any_number_of_threads(run_of):
     plan = plan_of(36)
     one, *others = (shot(run_of(plan), threads, rays=50_000) for threads in (1, 2, 3))

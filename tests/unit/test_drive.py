@@ -84,7 +84,7 @@ class Counted:
 
 
 def reach(run, limit, stop=None):
-    drive = Drive(1, stop or threading.Event(), lambda done, total: None, 1)
+    drive = Drive(1, stop or threading.Event(), lambda done, total: None)
     return drive.reach(run, list(range(len(run.needed))), run.reached, limit, None)
 
 

@@ -29,6 +29,9 @@ class Choice:
     sides: tuple
     reason: str
 
+    def __str__(self):
+        return f"{' and '.join(COMPONENTS[side] for side in self.sides) or 'audit'}: {self.estimator} ({self.reason})"
+
     def start(self, plan, key):
         """A run of it.
 
