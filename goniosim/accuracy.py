@@ -44,7 +44,7 @@ def relative_error(of, energy, stderr, total, projected_solid_angle, weights):
 
 
 def norm(energy, projected_solid_angle):
-    """Root of the integral of the squared BSDF times cos(theta) over the valid cells, in sr^-1/2: Eq. 4, Bati et al. 2019.
+    """Root of the integral of the squared BSDF times cos(theta) over the valid cells, as in Eq. 4, Bati et al. 2019.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def norm(energy, projected_solid_angle):
 
     Returns
     -------
-    ndarray, shape (...)
+    ndarray, shape (...), in sr^-1/2
     """
     valid = projected_solid_angle > 0.0
     squares = np.divide(energy**2, projected_solid_angle, out=np.zeros_like(energy), where=valid)

@@ -1,4 +1,4 @@
-"""An estimator of replicates for tests: the analog walk, whose histograms are folded and forgotten but for their means."""
+"""An estimator of replicates for tests: the analog walk, whose histograms are folded and all but their means forgotten."""
 
 import numpy as np
 
@@ -12,6 +12,7 @@ class Plain:
     name = "plain"
     chunk = 3
     mends = False
+    has_nodes = False
 
     def __init__(self, plan, sides=(UP, DOWN)):
         self.plan = plan

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..accuracy import norm, relative_error
-from ..result import Component, Cost
+from ..result import Cost
 from . import estimate
 
 

@@ -70,6 +70,7 @@ class Drive:
         left, number = list(directions), 0
         while left and not self._stop.is_set() and limit.allows(run, left, number):
             started = time.perf_counter()
+            self.expect(len(left) * run.rays_of_round(number))
             self._do(run, run.round(number, left), note)
             limit.took(time.perf_counter() - started)
             left = [m for m in left if not reached(run, m)]

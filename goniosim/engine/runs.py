@@ -20,6 +20,8 @@ class Work:
         Numbers of the replicates.
     last : bool
         Whether a checkpoint of the direction follows.
+    coarse : bool
+        Whether only every second node is used, so that the bias of the nodes is seen.
     """
 
     direction: int
@@ -27,6 +29,7 @@ class Work:
     rays: int
     replicates: range | None = None
     last: bool = False
+    coarse: bool = False
 
 
 class Spending:

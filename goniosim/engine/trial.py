@@ -1,4 +1,4 @@
-"""How long replicates take, from a trial of two sizes: what each costs whatever its size, and what a light path adds."""
+"""How long replicates take, from a trial of two sizes: what each costs in any case, and what a light path adds."""
 
 import threading
 import time

@@ -12,6 +12,8 @@ Every estimator is a class of ways out with
     Replicates that one call of ``run`` makes at the most.
 ``mends``
     Whether the variance of cells with few hits is mended, see `goniosim.engine.mending`.
+``has_nodes``
+    Whether it interpolates between nodes; ``run`` then takes ``stride=2`` to use every second one.
 ``refusal(plan, sides)``
     One sentence why it does not apply to these ways out, or None.
 ``prepare()``
