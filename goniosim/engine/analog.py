@@ -1,6 +1,7 @@
 """The analog estimator: every ray is a path of its own that leaves once, and tells its own error."""
 
 import time
+from typing import ClassVar
 
 import numpy as np
 
@@ -37,6 +38,8 @@ class AnalogRun:
     name = "analog"
     # Its rays are followed to their ends, so that it tells where all energy went.
     audits = True
+    # Nothing lies between nodes.
+    bias: ClassVar[dict] = {}
 
     def __init__(self, plan, key, sides=()):
         directions = len(plan.theta_deg)

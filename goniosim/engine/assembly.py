@@ -87,12 +87,20 @@ def errors(plan, run, direction):
 
 
 def worst_error(plan, run, direction, of):
-    """Largest relative error of the components of a run in one direction, see `goniosim.accuracy.relative_error`."""
+    """Largest relative error of the components of a run in one direction, see `goniosim.accuracy.relative_error`.
+
+    What nodes let the energies be off counts as an error too.
+    """
     size, weights = valid_size(plan, direction), estimate.channel_weights(plan)
-    return max(
-        relative_error(of, *run.slices(side, direction)[:2], run.total(side, direction), size, weights)
-        for side in run.sides
-    )
+    found = []
+    for side in run.sides:
+        energy, stderr = run.slices(side, direction)[:2]
+        value, error = run.total(side, direction)
+        if direction in run.bias:
+            stderr = np.hypot(stderr, run.bias[direction])
+            error = np.hypot(error, run.bias[direction].sum(axis=(1, 2)))
+        found.append(relative_error(of, energy, stderr, (value, error), size, weights))
+    return max(found)
 
 
 def valid_size(plan, direction):

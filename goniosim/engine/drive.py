@@ -92,7 +92,7 @@ class Drive:
 
         def reduce(one, outcome, buffer):
             run.reduce(one, outcome, buffer)
-            if outcome is not None:
+            if outcome is not None and not one.coarse:
                 self._done += one.rays
             self.seconds = time.perf_counter() - self._started
             if one.last and not self._stop.is_set():
