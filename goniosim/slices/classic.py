@@ -8,6 +8,9 @@ from .._jit import scalar, stage
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
+# Of d omega_v to the solid angle of the axis whose polar angle is `tilt`, besides what `view_direction` returns.
+AXIS_JACOBIAN = 1.0
+
 
 @stage
 def cells_of(x, y, z, n, rows, columns, cell):

@@ -17,6 +17,9 @@ from .._jit import scalar, stage
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
+# Of d omega_v to the solid angle of the axis whose polar angle is `tilt`, besides what `view_direction` returns.
+AXIS_JACOBIAN = 4.0
+
 # Gauss-Legendre nodes for a cell above the horizon, for a high one, and for one that the horizon cuts.
 _NODES = 10
 _NODES_HIGH = 32

@@ -1,0 +1,148 @@
+"""The products of matrices between binned arrivals and what leaves: at the nodes, or in classic cells."""
+
+import math
+
+import numpy as np
+
+from ...slices.grid import HALF_PI
+from ..layout import UP
+from ..stages import ROUGH_CONDUCTOR
+from ..stages.smooth_conductor import ETA, KAPPA
+from . import cells, kernels
+from .azimuths import at_azimuths, cosines, to_coefficients, to_values
+from .choice import IN, OUT, THROUGH, inner_index
+
+_NUMBER = 8
+
+
+class Application:
+    """One interface, or two, applied to the arrivals of several replicates.
+
+    Attributes
+    ----------
+    sums_cells : bool
+        Whether `apply` yields energies of classic cells instead of radiance at the nodes.
+    """
+
+    def __init__(self, plan, variant, nodes, slots, replicates):
+        self.plan = plan
+        self.variant = variant
+        self.nodes = nodes
+        self.slots = slots
+        self.replicates = replicates
+        k = variant.interface
+        self.conductor = variant.leaves != OUT and plan.kinds[k] == ROUGH_CONDUCTOR
+        # Channels that reflect differently have kernels of their own.
+        self.groups = plan.n_distinct if self.conductor else 1
+        self.sums_cells = variant.leaves != IN and cells.fits(plan, nodes)
+        every = cells.Nodes(nodes)
+        last = cells.CellRows(plan, nodes) if self.sums_cells else every
+        self.rows = [every, last] if variant.leaves == THROUGH else [last]
+        self.azimuths = plan.width if self.sums_cells else 2 * nodes + 1
+        self.kernels = None
+
+    def prepare(self):
+        """Tabulate the kernels, for all incident directions."""
+        plan, variant = self.plan, self.variant
+        k = variant.interface
+        self.matrix = cosines(2 * self.nodes)
+        if self.conductor:
+            pairs = zip(plan.spectral[k, ETA], plan.spectral[k, KAPPA], strict=True)
+            found = np.stack([self._kernel(kernels.CONDUCTOR, k, *pair, self.rows[0]) for pair in pairs])
+        else:
+            event = kernels.TRANSMISSION if variant.leaves == OUT else kernels.INTERNAL
+            found = self._kernel(event, k, inner_index(plan, k), 0.0, self.rows[0])[None]
+        self.kernels = [found]
+        if variant.leaves == THROUGH:
+            eta = inner_index(plan, variant.exit)
+            found = self._kernel(kernels.TRANSMISSION, variant.exit, eta, 0.0, self.rows[1])
+            # The exit sees light come from where it does not go.
+            found[1::2] *= -1.0
+            self.kernels.append(found[None])
+            self.toll = self._toll()
+        if self.sums_cells:
+            self.to_azimuths = cells.column_matrix(plan, self.nodes, at_azimuths)
+        else:
+            self.to_azimuths = at_azimuths(2 * self.nodes, np.arange(2 * self.nodes + 1))
+
+    def _kernel(self, event, k, eta, kappa, rows):
+        alpha = float(self.plan.alphas[k])
+        return kernels.coefficients(event, alpha, float(eta), float(kappa), self.nodes, rows, self.matrix)
+
+    def _toll(self):
+        """Quadrature weights of the nodes for a cosine-weighted integral, with what the way to the exit leaves.
+
+        Shape (groups, 1, polar angles, channels of a group).
+        """
+        angle = np.linspace(0.0, HALF_PI, self.nodes + 1)
+        step = angle[1]
+        measure = np.sin(angle) * step
+        # The pole has a share of the first interval.
+        measure[0] = step * step / 12.0
+        cosine = np.maximum(np.cos(angle), 1e-300)
+        tau = self.plan.taus[0].reshape(self.groups, 1, 1, -1)
+        with np.errstate(under="ignore"):
+            passed = np.exp(-tau / cosine[:, None])
+        return (measure * cosine * (math.pi / (2 * self.nodes)))[:, None] * passed
+
+    @property
+    def columns(self):
+        """Columns of the matrices: replicates, slots and channels of a group."""
+        return self.replicates * self.slots * self.plan.n_distinct // self.groups
+
+    def workspace(self):
+        """Two arrays that `apply` goes back and forth between; `arrivals` yields the first in its shape."""
+        size = self.groups * (2 * self.nodes + 1) * (self.nodes + 1) * self.columns
+        return np.empty(size), np.empty(size)
+
+    def arrivals(self, space):
+        """Where arrivals belong, shape (groups, azimuths, polar angles, replicates, slots, channels of a group)."""
+        shape = (self.groups, 2 * self.nodes + 1, self.nodes + 1, self.replicates, self.slots, -1)
+        return space[0].reshape(shape)
+
+    def apply(self, space):
+        """What leaves, in the layout of `arrivals`: azimuths or columns, polar angles or rows. ``space`` is overwritten."""
+        there, here = space
+        there = there.reshape(self.groups, 2 * self.nodes + 1, -1)
+        here = here.reshape(there.shape)
+        for g in range(self.groups):
+            to_coefficients(self.matrix, there[g], here[g])
+        for stage, (kernel, rows) in enumerate(zip(self.kernels, self.rows, strict=True)):
+            if stage == 1:
+                tolled = here.reshape(*here.shape[:2], self.nodes + 1, -1, self.toll.shape[-1])
+                tolled *= self.toll[:, :, :, None]
+            shape = (self.groups, 2 * self.nodes + 1, len(rows), self.columns)
+            product = there.reshape(-1)[: math.prod(shape)].reshape(shape)
+            np.matmul(kernel, here.reshape(*shape[:2], self.nodes + 1, self.columns), out=product)
+            there, here = here, product
+        values = there.reshape(-1)[: self.groups * self.azimuths * len(self.rows[-1]) * self.columns]
+        values = values.reshape(self.groups, self.azimuths, -1)
+        for g in range(self.groups):
+            to_values(self.to_azimuths, here[g].reshape(2 * self.nodes + 1, -1), values[g])
+        return values.reshape(self.groups, self.azimuths, len(self.rows[-1]), self.replicates, self.slots, -1)
+
+    @property
+    def multiplications(self):
+        """Of one call of `apply`."""
+        polar, azimuths = self.nodes + 1, 2 * self.nodes + 1
+        kernels_of = sum(len(rows) * polar for rows in self.rows)
+        series = (azimuths * polar + self.azimuths * len(self.rows[-1])) // 2
+        return self.groups * self.columns * azimuths * (kernels_of + series)
+
+    @property
+    def memory(self):
+        """Bytes that are shared, and bytes of a workspace with what `apply` needs besides."""
+        polar, azimuths = self.nodes + 1, 2 * self.nodes + 1
+        groups = [self.groups, 1][: len(self.rows)]
+        tables = sum(g * azimuths * len(rows) * polar for g, rows in zip(groups, self.rows, strict=True))
+        # The table of a block of rows, its nodes combined, its coefficients, and halves of them.
+        making = 4 * azimuths * max(rows.nodes_of(kernels.BLOCK) for rows in self.rows) * polar
+        series = 3 * azimuths * azimuths
+        own = 3 * self.groups * azimuths * polar * self.columns
+        return _NUMBER * (tables + making + series), _NUMBER * own
+
+
+def order_ahead(plan, variant, side):
+    """Number of the slot of light that leaves, less its order on arrival at the interface."""
+    last_event = 1 if side == UP or variant.interface == 0 else 0
+    return last_event - int(plan.slots[side, 2])

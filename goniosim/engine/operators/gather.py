@@ -1,0 +1,138 @@
+"""Cells from a smooth radiance at the nodes: four points of each cell, if need be through a narrow exit.
+
+The points are a random one and its turns about the cell's centre by quarters: what is linear in the cell cancels.
+Through an exit, each point is followed backwards by facets as seen from outside. Their rare tail is drawn apart, as a
+difference to the core at the same point: the weights of tail and core are constants, and do not add to the scatter.
+"""
+
+import math
+
+import numpy as np
+
+from ..._jit import kernel, stage
+from ...optics.elementary import sincos_turns
+from ...optics.fresnel import dielectric_transmittance, fresnel_dielectric
+from ...optics.ggx import sample_visible_normal, smith_g1
+from ...optics.medium import path_length, transmittance
+from ...optics.microfacet import microfacet_transmission
+from ...optics.random import derive_key, uniform
+from ...slices import view_direction, view_row
+from ...slices.grid import HALF_PI
+from ..lattice import coordinate
+from .nodes import interpolate
+
+POINTS = 4
+# Share of the facets that is the tail, and how its points are drawn: 1 - u = TAIL t^3, of weight 3 t^2.
+TAIL = 0.02
+_LEAST_TAIL = 1e-12
+_LEAST_COSINE = 1e-9
+
+
+@kernel
+def gather(values, stride, parametrization, rows, columns, light, exits, source, taus, key, out):
+    """Energy that leaves into the cells of a folded slice.
+
+    Parameters
+    ----------
+    values : ndarray, shape (azimuths, polar angles, n)
+        Radiance at the nodes: outside, or below an exit.
+    stride : int
+    parametrization, rows, columns : int
+    light : ndarray, shape (3,)
+    exits : ndarray, shape (0,) or (2,)
+        Width of the exit and its index inside over outside, or nothing.
+    source : ndarray, shape (0,) or (2,)
+        The same of a top interface that the light itself comes through, for the first ``len(taus)`` of the n.
+    taus : ndarray, shape (channels,)
+        Optical depths before the exit.
+    key : uint64
+    out : ndarray, shape (n, rows * width)
+    """
+    found = np.empty(out.shape[0])
+    core = np.empty((POINTS, out.shape[0]))
+    x = np.empty(POINTS)
+    y = np.empty(POINTS)
+    z = np.empty(POINTS)
+    measure = np.empty(POINTS)
+    width = out.shape[1] // rows
+    for cell in range(out.shape[1]):
+        for e in range(out.shape[0]):
+            out[e, cell] = 0.0
+        cell_key = derive_key(key, cell)
+        u1 = uniform(cell_key, 0)
+        u2 = uniform(cell_key, 1)
+        if not _points(parametrization, cell // width, cell % width, rows, columns, light, u1, u2, x, y, z, measure):
+            continue
+        if exits.shape[0] == 0:
+            for i in range(POINTS):
+                interpolate(x[i], y[i], z[i], stride, values, found)
+                for e in range(found.shape[0]):
+                    out[e, cell] += measure[i] / POINTS * found[e]
+            continue
+        azimuth = uniform(cell_key, 2)
+        height = (1.0 - TAIL) * uniform(cell_key, 3)
+        for i in range(POINTS):
+            u = coordinate(azimuth, i, 1.0 / POINTS)
+            _before(x[i], y[i], z[i], u, height, exits, source, light, taus, stride, values, core[i])
+            for e in range(found.shape[0]):
+                out[e, cell] += measure[i] / POINTS * core[i, e]
+        # A smooth exit has one facet.
+        for j in range(2 if exits[0] > 0.0 else 0):
+            i = 2 * j
+            t = coordinate(uniform(cell_key, 5), j, 0.5)
+            u = coordinate(uniform(cell_key, 4), j, 0.5)
+            height = 1.0 - max(TAIL * t * t * t, _LEAST_TAIL)
+            _before(x[i], y[i], z[i], u, height, exits, source, light, taus, stride, values, found)
+            for e in range(found.shape[0]):
+                out[e, cell] += 0.5 * TAIL * 3.0 * t * t * measure[i] * (found[e] - core[i, e])
+
+
+@stage
+def _points(parametrization, row, column, rows, columns, light, u1, u2, x, y, z, measure):
+    """Points of a cell and cos(theta_v) d omega_v at each, times the cell; whether any is above the horizon."""
+    height = HALF_PI / rows
+    breadth = 2.0 * math.pi / columns
+    above = False
+    for i in range(POINTS):
+        p = u1 if i % 2 == 0 else u2
+        q = u2 if i % 2 == 0 else 1.0 - u1
+        p = 1.0 - p if i >= 2 else p
+        q = 1.0 - q if i >= 2 else q
+        sine, cosine, jacobian = view_row(parametrization, (row + p) * height)
+        sin_phi, cos_phi = sincos_turns((column + q) / columns)
+        x[i], y[i], z[i], rest = view_direction(
+            parametrization, sine, cosine, cos_phi, sin_phi, light[0], light[1], light[2]
+        )
+        inside = z[i] > 0.0 and rest > 0.0
+        measure[i] = z[i] * jacobian * rest * height * breadth if inside else 0.0
+        z[i] = z[i] if inside else 1.0
+        x[i] = x[i] if inside else 0.0
+        y[i] = y[i] if inside else 0.0
+        above = above or inside
+    return above
+
+
+@stage
+def _before(x, y, z, azimuth, height, exits, source, light, taus, stride, values, found):
+    """Radiance in the direction (x, y, z) outside by one facet of the exit."""
+    alpha = exits[0]
+    eta = exits[1]
+    sine, cosine = sincos_turns(azimuth)
+    mx, my, mz = sample_visible_normal(x, y, z, alpha, cosine, sine, height)
+    facet = min(1.0, max(0.0, x * mx + y * my + z * mz))
+    _, cos_t = fresnel_dielectric(facet, eta)
+    along = facet / eta - cos_t
+    bx = x / eta - along * mx
+    by = y / eta - along * my
+    bz = z / eta - along * mz
+    gain = dielectric_transmittance(facet, eta) * smith_g1(bz, alpha) / (eta * eta)
+    bz = max(bz, _LEAST_COSINE)
+    interpolate(bx, by, bz, stride, values, found)
+    if source.shape[0] > 0:
+        value, facet = microfacet_transmission(bx, by, bz, light[0], light[1], light[2], source[0], source[1])
+        value *= source[1] * source[1] * dielectric_transmittance(facet, source[1])
+        for c in range(taus.shape[0]):
+            found[c] += value
+    path = path_length(bz)
+    for e in range(found.shape[0]):
+        found[e] *= gain * transmittance(taus[e % taus.shape[0]], path)
