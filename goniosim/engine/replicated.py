@@ -29,6 +29,8 @@ class ReplicatedRun:
     plan : goniosim.engine.plan.Plan
     estimator : object
         See `goniosim.engine.estimators`.
+    sides : tuple of int
+        Ways out that it serves.
     key : int or uint64
         Seed of the random numbers.
 
@@ -41,8 +43,8 @@ class ReplicatedRun:
 
     audits = False
 
-    def __init__(self, plan, estimator, key):
-        self.sides = estimator.sides
+    def __init__(self, plan, estimator, sides, key):
+        self.sides = sides
         self.name = estimator.name
         self._plan, self._estimator = plan, estimator
         self._key = child_key(key, BRANCH)

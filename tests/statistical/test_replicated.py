@@ -38,7 +38,7 @@ def plan_of(columns, orders=None):
 def pair(request):
     """The same slab by independent paths and by replicates."""
     plan = plan_of(*request.param)
-    return plan, shot(AnalogRun(plan, 1, (UP, DOWN))), shot(ReplicatedRun(plan, Plain(plan), 1))
+    return plan, shot(AnalogRun(plan, 1, (UP, DOWN))), shot(ReplicatedRun(plan, Plain(plan), (UP, DOWN), 1))
 
 
 def views(plan):
@@ -81,7 +81,7 @@ def test_checkpoints_fall_on_rounds_and_errors_shrink(pair):
 
 
 @pytest.mark.parametrize(
-    "run_of", [lambda plan: AnalogRun(plan, 7, (UP, DOWN)), lambda p: ReplicatedRun(p, Plain(p), 7)]
+    "run_of", [lambda plan: AnalogRun(plan, 7, (UP, DOWN)), lambda p: ReplicatedRun(p, Plain(p), (UP, DOWN), 7)]
 )
 def test_the_same_bits_on_any_number_of_threads(run_of):
     plan = plan_of(36)
@@ -96,9 +96,9 @@ def test_the_same_bits_on_any_number_of_threads(run_of):
 
 def test_components_that_run_apart_are_the_same():
     plan = plan_of(36)
-    both = shot(ReplicatedRun(plan, Plain(plan), 7), rays=50_000)
+    both = shot(ReplicatedRun(plan, Plain(plan), (UP, DOWN), 7), rays=50_000)
     for side in (UP, DOWN):
-        alone = shot(ReplicatedRun(plan, Plain(plan, (side,)), 7), rays=50_000)
+        alone = shot(ReplicatedRun(plan, Plain(plan, (side,)), (side,), 7), rays=50_000)
         assert alone.sides == (side,) and np.array_equal(alone.slices(side, 1)[0], both.slices(side, 1)[0])
 
 
@@ -125,7 +125,7 @@ class Stopping(Plain):
 
 def test_a_stop_keeps_whole_replicates():
     plan, stop = plan_of(36), threading.Event()
-    run = shot(ReplicatedRun(plan, Stopping(plan, stop, 9), 1), threads=1, rays=50_000, stop=stop)
+    run = shot(ReplicatedRun(plan, Stopping(plan, stop, 9), (UP, DOWN), 1), threads=1, rays=50_000, stop=stop)
     size = 50_016 // 32
     assert not run.finished and 8 * size <= run.rays[0] < 50_000 and run.rays[0] % size == 0
     assert len(run.spending.checkpoints[0]) == 1 and run.slices(DOWN, 0)[0].sum() > 0.3

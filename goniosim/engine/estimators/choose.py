@@ -43,7 +43,8 @@ class Choice:
         """
         if self.estimator == ANALOG:
             return AnalogRun(plan, key, self.sides)
-        return ReplicatedRun(plan, ESTIMATORS[self.estimator](plan, self.sides), key)
+        estimator = ESTIMATORS[self.estimator](plan, self.sides)
+        return ReplicatedRun(plan, estimator, self.sides, key)
 
 
 def choose(plan, name, rays):

@@ -46,6 +46,7 @@ class Connection:
     name = "connection"
     chunk = 1
     mends = False
+    has_nodes = False
 
     @staticmethod
     def refusal(plan, sides):

@@ -39,6 +39,7 @@ class Operator:
     name = "operator"
     chunk = 8
     mends = False
+    has_nodes = True
 
     @staticmethod
     def refusal(plan, sides):
