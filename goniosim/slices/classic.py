@@ -8,6 +8,9 @@ from .._jit import scalar, stage
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
+# Whether a row holds the directions of one height, all around the normal.
+RINGS = True
+
 
 @stage
 def cells_of(x, y, z, n, rows, columns, cell):
