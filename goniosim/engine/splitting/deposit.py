@@ -24,7 +24,7 @@ from .layout import (
 )
 
 # Azimuths of an exit that has forgotten its own: more cost as much as other paths, and tell less.
-AZIMUTHS = 32
+AZIMUTHS = 64
 
 # Of them, how many cost as much as meeting an interface.
 _AZIMUTHS_PER_EVENT = 2

@@ -8,7 +8,7 @@ from ...slices import PARAMETRIZATIONS
 from ..layout import UP
 
 # More facets cost more than they tell, since other paths would arrive from elsewhere.
-MOST_FACETS = 16
+MOST_FACETS = 32
 
 
 def facets_per_arrival(plan, direction, way):
