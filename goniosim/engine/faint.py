@@ -41,9 +41,13 @@ def faint_weights(plan):
         For every incident direction and queue: that of the rays that arrive at interface k from above
         has the number 2 k, from below 2 k + 1.
     """
+    return np.maximum(FAINT * usual_weights(plan), DARKEST)
+
+
+def usual_weights(plan):
+    """Weights that are usual in the analog walk; arguments and shape as of `faint_weights`."""
     workspace = Workspace(plan)
-    usual = np.stack([_usual(plan, workspace, direction) for direction in range(len(plan.theta_deg))])
-    return np.maximum(FAINT * usual, DARKEST)
+    return np.stack([_usual(plan, workspace, direction) for direction in range(len(plan.theta_deg))])
 
 
 def _usual(plan, workspace, direction):

@@ -30,6 +30,9 @@ _ROWS = 90
 # Cells at a time, so that memory stays bounded on fine slices.
 _BLOCK = 1 << 16
 
+# Whether a row holds the directions of one height, all around the normal.
+RINGS = False
+
 
 @stage
 def cells_of(x, y, z, n, rows, columns, light, cell):

@@ -29,5 +29,6 @@ A new one is a new file and a line here; the order is that in which ``auto`` tri
 
 from .connection import Connection
 from .operator import Operator
+from .split import Split
 
-ESTIMATORS = {each.name: each for each in (Connection, Operator)}
+ESTIMATORS = {each.name: each for each in (Connection, Operator, Split)}

@@ -20,7 +20,7 @@ def meet_facets(batch, n, alpha, key, scratch):
     u_y = scratch[FACET_Y]
     u_z = scratch[FACET_Z]
     _draw(n, key, u_x, u_y, u_z)
-    _sample(batch[X], batch[Y], batch[Z], n, alpha, u_x, u_y, u_z, scratch[COSINE])
+    sample_facets(batch[X], batch[Y], batch[Z], n, alpha, u_x, u_y, u_z, scratch[COSINE])
 
 
 @stage
@@ -33,7 +33,8 @@ def _draw(n, key, cosines, sines, heights):
 
 
 @stage
-def _sample(x, y, z, n, alpha, fx, fy, fz, cosines):
+def sample_facets(x, y, z, n, alpha, fx, fy, fz, cosines):
+    """Turn uniform numbers into facets: cosine and sine of an azimuth in ``fx`` and ``fy``, a height in ``fz``."""
     for i in range(n):
         vx = x[i]
         vy = y[i]

@@ -1,0 +1,181 @@
+"""The kernel of the split walk."""
+
+from ..._jit import kernel, stage
+from ...optics.random import derive_key, uniform
+from ..layout import DOWN, UP, WEIGHT, X, Z
+from ..stages import LAMBERT, ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC
+from ..stages.travel import absorb, roulette
+from ..walk import ABOVE, BELOW, MAX_ROUNDS
+from .base import meet_base
+from .deposit import leave
+from .dielectric import go_through, meet_dielectric, turn_back
+from .layout import (
+    BACK_GAIN,
+    BACK_X,
+    BACK_Y,
+    BACK_Z,
+    BASE,
+    BASED,
+    ENTRY,
+    EVENTS,
+    EXIT,
+    FACET_X,
+    FACET_Y,
+    FACET_Z,
+    FRESH,
+    HASHED,
+    LATER,
+    LAUNCHED,
+    LEFT,
+    PHASES,
+    POINT_U,
+    POINT_V,
+    RADIUS,
+    ROUNDS,
+    STAGES,
+    THROUGH_GAIN,
+    THROUGH_X,
+    THROUGH_Y,
+    THROUGH_Z,
+)
+from .numbers import facet_numbers, hashed_points, lattice_points
+from .queues import close_up, fullest, launch, pop, push
+
+_COIN_KEY = 1
+
+
+@kernel
+def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, space, ledger, cells):
+    """Advance one replicate by about ``budget`` events; returns whether it is finished.
+
+    Parameters
+    ----------
+    stack : tuple
+        Interface and medium tables of `plan.Plan.tables`.
+    scales : ndarray, shape (2 K, channels)
+        Reciprocals of the weights below which a ray is faint, by interface and side of arrival.
+    facets : ndarray of int64, shape (2,)
+        For exits upwards and downwards, the facets of an arrival; 0 where nobody looks.
+    crowd : int
+        Rays in the fullest queue, above which an inner interface does not branch.
+    light : ndarray, shape (3,)
+    paths_key : uint64
+    shifts : ndarray, shape (lattice.DIMENSIONS,)
+        Of the lattice of all paths.
+    budget : int
+    space : tuple
+        Arrays of the workspace: state, rays in each queue, queues, one batch, its scratch, and one row of
+        places.
+    ledger : ndarray, shape (N_LEDGER, channels)
+        Overwritten, and without meaning: losses are not this walk's business.
+    cells : tuple
+        See `deposit.leave`.
+    """
+    kinds, alphas, etas, spectral, forgets, taus, absorbs, with_orders = stack
+    state, filled, queues, batch, scratch, places = space
+    interfaces = kinds.shape[0]
+    last = interfaces - 1
+    channels = scales.shape[1]
+    most = batch.shape[1]
+    path = batch[batch.shape[0] - 1]
+    stop_at = state[EVENTS] + budget
+    while state[EVENTS] < stop_at:
+        q = fullest(filled)
+        key = derive_key(paths_key, state[STAGES])
+        state[STAGES] += 1
+        crowded = filled[q] > crowd
+        if filled[q] < most and state[LEFT] > 0:
+            n = min(most, state[LEFT])
+            launch(batch, n, light, channels, state[LAUNCHED])
+            state[LEFT] -= n
+            state[LAUNCHED] += n
+            state[EVENTS] += n
+            k, side, phase, dimension = 0, ABOVE, FRESH, ENTRY
+        elif filled[q] == 0:
+            return True
+        else:
+            if state[LEFT] == 0:
+                state[ROUNDS] += 1
+                if state[ROUNDS] > MAX_ROUNDS * filled.shape[0]:
+                    # As in the analog walk: what is still inside is lost.
+                    return True
+            phase, arrival = q // (2 * interfaces), q % (2 * interfaces)
+            k, side = arrival // 2, arrival % 2
+            n = min(most, filled[q])
+            filled[q] -= n
+            pop(queues[q], filled[q], batch, n, Z if forgets[k] else X)
+            medium = k - 1 if side == ABOVE else k
+            if absorbs[medium]:
+                absorb(batch, n, taus[medium], scratch[RADIUS], ledger)
+            state[EVENTS] += n
+            if roulette(batch, n, scales[arrival], scratch[RADIUS], key, ledger):
+                n = close_up(batch, n, scratch[RADIUS], places)
+            dimension = BASE if k == last and phase == FRESH else EXIT if k == 0 and phase == BASED else HASHED
+
+        if with_orders and k == 0:
+            _count_order(batch[WEIGHT + channels], n)
+        opaque = kinds[k] != ROUGH_DIELECTRIC and kinds[k] != SMOOTH_DIELECTRIC
+        way = UP if k == 0 and side == BELOW else DOWN if k == last and side == ABOVE else -1
+        free = kinds[last] == LAMBERT and phase != FRESH
+        seen = way >= 0 and not opaque and facets[way] > 0
+        m = 1 if free or not seen else facets[way]
+        if dimension == HASHED:
+            hashed_points(n, key, scratch[POINT_U], scratch[POINT_V])
+        else:
+            lattice_points(path, n, m, dimension, shifts, scratch[POINT_U], scratch[POINT_V])
+
+        if opaque:
+            meet_base(kinds[k], batch, n, alphas[k], spectral[k], scratch)
+        else:
+            eta = etas[k] if side == ABOVE else 1.0 / etas[k]
+            # The last facet also reflects what goes on inside.
+            for number in range(m):
+                if kinds[k] == ROUGH_DIELECTRIC:
+                    u, v = scratch[POINT_U], scratch[POINT_V]
+                    facet_numbers(u, v, n, number, dimension, scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z])
+                meet_dielectric(kinds[k], batch, n, alphas[k], eta, scratch)
+                if seen or way < 0:
+                    go_through(kinds[k], batch, n, alphas[k], eta, scratch)
+                if seen:
+                    state[EVENTS] += leave(way, batch, n, 1.0 / m, free, key, channels, scratch, places, cells)
+            state[EVENTS] += (m - 1) * n
+            turn_back(kinds[k], batch, n, alphas[k], scratch)
+            if way < 0 and crowded and not (k == 0 and side == ABOVE):
+                _toss(scratch[THROUGH_GAIN], scratch[BACK_GAIN], n, derive_key(key, _COIN_KEY))
+
+        if k == last:
+            phase = max(phase, BASED)
+        elif k == 0 and phase == BASED:
+            phase = LATER
+        for through in range(2):
+            up = (through == 1) == (side == BELOW)
+            beyond = k - 1 if up else k + 1
+            # Light that the top reflects at once is integrated elsewhere.
+            if beyond < 0 or beyond > last or (through == 1 and opaque):
+                continue
+            arrival = 2 * beyond + (BELOW if up else ABOVE)
+            target = 2 * interfaces * phase + arrival
+            x = scratch[THROUGH_X] if through == 1 else scratch[BACK_X]
+            y = scratch[THROUGH_Y] if through == 1 else scratch[BACK_Y]
+            z = scratch[THROUGH_Z] if through == 1 else scratch[BACK_Z]
+            gain = scratch[THROUGH_GAIN] if through == 1 else scratch[BACK_GAIN]
+            first = Z if forgets[beyond] else X
+            queue = queues[target]
+            filled[target] += push(batch, n, x, y, z, gain, channels, places, queue, filled[target], first)
+    return False
+
+
+@stage
+def _count_order(order, n):
+    for i in range(n):
+        order[i] += 1.0
+
+
+@stage
+def _toss(through, back, n, key):
+    """Follow one branch, chosen by the weights of both."""
+    for i in range(n):
+        total = through[i] + back[i]
+        passes = uniform(key, i) * total < through[i]
+        through[i] = total if passes else 0.0
+        back[i] = 0.0 if passes else total

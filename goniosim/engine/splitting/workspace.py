@@ -1,0 +1,121 @@
+"""Queues, histograms and scratch arrays of one thread that makes replicates by the split walk."""
+
+import numpy as np
+
+from ...slices import PARAMETRIZATIONS
+from ..lattice import DIMENSIONS
+from ..layout import N_LEDGER, WEIGHT
+from ..unit import BATCH, BUDGET, child_key, queue_capacity
+from .layout import EVENTS, LEFT, N_SCRATCH, N_STATE, PHASES
+from .numbers import lattice_shifts
+from .walk import split_walk
+
+# Batches in the fullest queue, above which inner interfaces do not branch. From there on no event adds
+# rays, so that this, and what `unit.queue_capacity` says of such traffic, is all that a queue must hold.
+CROWD = 3
+# Children of the key of a replicate.
+_SHIFTS, _PATHS = 0, 1
+
+
+def shapes(plan, slots):
+    """Shapes of the arrays of float64, by name; ``slots`` is the number of histograms."""
+    queues = 2 * len(plan.kinds) * PHASES
+    fields = WEIGHT + plan.n_distinct + (1 if plan.orders else 0) + 1
+    rings = slots * plan.rows if PARAMETRIZATIONS[plan.parametrization_name][1].RINGS else 1
+    return {
+        "queues": (queues, fields, queue_capacity(queues) + CROWD * BATCH),
+        "batch": (fields, BATCH),
+        "scratch": (N_SCRATCH, BATCH),
+        "histogram": (slots * plan.rows * plan.columns, plan.n_distinct),
+        "rings": (rings, plan.n_distinct),
+    }
+
+
+class Workspace:
+    """See `goniosim.engine.estimators`.
+
+    Parameters
+    ----------
+    plan : goniosim.engine.plan.Plan
+    slots : ndarray of int64, shape (2, 3)
+        For each way out: first histogram, number of histograms (0 if nobody looks), first order.
+    facets : ndarray of int64, shape (M, 2)
+        Facets through which an arrival leaves.
+    scales : ndarray, shape (M, 2 K, D)
+        Reciprocals of the weights below which a ray is faint.
+    """
+
+    def __init__(self, plan, slots, facets, scales):
+        self.plan = plan
+        self.slots = slots
+        self.facets = facets
+        self.scales = scales
+        arrays = {name: np.zeros(shape) for name, shape in shapes(plan, int(slots[:, 1].sum())).items()}
+        self.queues, self.batch, self.scratch = arrays["queues"], arrays["batch"], arrays["scratch"]
+        self.histogram, self.rings = arrays["histogram"], arrays["rings"]
+        self.state = np.zeros(N_STATE, np.int64)
+        self.filled = np.zeros(len(self.queues), np.int64)
+        sources = np.empty(BATCH, np.uint32)
+        self.cells_of_deposits = np.empty(BATCH, np.int32)
+        self.ledger = np.zeros((N_LEDGER, plan.n_distinct))
+        self.shifts = np.empty(DIMENSIONS)
+        self.space = (self.state, self.filled, self.queues, self.batch, self.scratch, sources)
+
+    def run(self, direction, size, keys, out, stop):
+        """Make replicates; returns what they cost in events, or None if ``stop`` was set."""
+        events = 0
+        for key, slices in zip(keys, out, strict=True):
+            self.begin(size)
+            lattice_shifts(child_key(key, _SHIFTS), self.shifts)
+            while not self.advance(direction, child_key(key, _PATHS), BUDGET):
+                if stop.is_set():
+                    return None
+            events += int(self.state[EVENTS])
+            self._collect(size, slices)
+        return events
+
+    def begin(self, size):
+        """Forget everything; ``size`` paths wait to be started."""
+        self.histogram.fill(0.0)
+        self.rings.fill(0.0)
+        self.filled[:] = 0
+        self.state[:] = 0
+        self.state[LEFT] = size
+        self.shifts[:] = 0.0
+
+    def advance(self, direction, key, budget):
+        """Run about ``budget`` events, and at least one stage; returns whether all paths are through."""
+        plan = self.plan
+        light = plan.light[direction]
+        parametrization = PARAMETRIZATIONS[plan.parametrization_name][1]
+        cells = (
+            plan.parametrization,
+            plan.rows,
+            plan.columns,
+            light,
+            self.slots,
+            self.cells_of_deposits,
+            self.histogram,
+            self.rings,
+            parametrization.RINGS,
+            plan.width < plan.columns,
+        )
+        scales, facets = self.scales[direction], self.facets[direction]
+        crowd = CROWD * BATCH
+        return split_walk(
+            plan.tables, scales, facets, crowd, light, key, self.shifts, budget, self.space, self.ledger, cells
+        )
+
+    def _collect(self, size, slices):
+        """Energy per cell of the whole slice, on the columns that tell all."""
+        plan = self.plan
+        cells = self.histogram.reshape(len(slices), plan.rows, plan.columns, plan.n_distinct)
+        share = 1.0 / size
+        if plan.width < plan.columns:
+            # The azimuth of 180 degrees belongs to the column behind it, which the fold puts on the one before it.
+            cells[:, :, plan.width - 1] += cells[:, :, plan.width]
+            share *= 0.5
+        np.multiply(np.moveaxis(cells[:, :, : plan.width], -1, 1), share, out=slices)
+        if PARAMETRIZATIONS[plan.parametrization_name][1].RINGS:
+            rings = self.rings.reshape(len(slices), plan.rows, plan.n_distinct)
+            slices += np.moveaxis(rings, -1, 1)[..., None] / (size * plan.columns)
