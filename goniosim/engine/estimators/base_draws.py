@@ -21,9 +21,12 @@ from ..lattice import STEPS, coordinate
 BLOCK = 512
 # Scratch rows: how a facet is drawn, from where it is seen, and what it does.
 COS_AZIMUTH, SIN_AZIMUTH, SHARE, SINE, HEIGHT, GAIN, PATH = range(7)
-# Further ones: the place of a cell, its measure at a draw, and the shifts of its lattice.
-LOW, SPAN, COLUMN, MEASURE, SHIFT = range(7, 12)
+# Further ones: the place of a cell, its measure and the weight of its facet at a draw, and the shifts of its lattice.
+LOW, SPAN, COLUMN, MEASURE, RARITY, SHIFT = range(7, 13)
 N_SCRATCH = SHIFT + 4
+# Shift with which point 0 of a lattice is in the middle of a cell.
+MIDDLE = 0.5
+LARGEST_SHARE = 1.0 - 2.0**-52
 
 
 @kernel
@@ -62,10 +65,14 @@ def come_back(interface, tau, first, n, shifts, scratch, sums):
 
 
 @kernel
-def look(interface, tau, slices, cells, begin, end, first, n, key, scratch, sums):
+def look(interface, tau, slices, cells, begin, end, first, n, key, scratch, flat, sums):
     """Add up what ``n`` draws of some cells see of a base of unit radiance.
 
     Each times cos(theta_v), and in units of the solid angle of the axis over the step of the squared sine.
+
+    Facets far from flat are rare, and let less through than all others. A cell that meets one in ten replicates would
+    mostly state too small an error. So they are drawn more often and weighted less. Only differences to the flat
+    facet, seen from the middle of the cell, are weighted: elsewhere the weights would be noise.
 
     Parameters
     ----------
@@ -84,9 +91,12 @@ def look(interface, tau, slices, cells, begin, end, first, n, key, scratch, sums
     key : uint64
         Parent of the keys of the cells.
     scratch : ndarray, shape (N_SCRATCH, BLOCK)
+    flat : ndarray, shape (channels, BLOCK)
+        Overwritten.
     sums : ndarray, shape (channels, m)
     """
     code, edges, per_row, columns, light = slices
+    _, eta = interface
     for start in range(begin, end, BLOCK):
         count = min(BLOCK, end - start)
         for i in range(count):
@@ -95,13 +105,19 @@ def look(interface, tau, slices, cells, begin, end, first, n, key, scratch, sums
             scratch[LOW, i] = edges[row]
             scratch[SPAN, i] = edges[row + 1] - edges[row]
             scratch[COLUMN, i] = number % per_row
-            own = derive_key(key, number)
+            for d in range(4):
+                scratch[SHIFT + d, i] = MIDDLE
+        _look_from_cells(code, columns, light, 0, count, scratch)
+        _refract((0.0, eta), count, scratch)
+        _keep_flat(tau, count, scratch, flat)
+        for i in range(count):
+            own = derive_key(key, cells[start + i])
             for d in range(4):
                 scratch[SHIFT + d, i] = uniform(own, d)
         for j in range(first, first + n):
             _look_from_cells(code, columns, light, j, count, scratch)
             _refract(interface, count, scratch)
-            _add_to_cells(tau, start, count, scratch, sums)
+            _add_to_cells(tau, start, count, scratch, flat, sums)
 
 
 @stage
@@ -129,6 +145,7 @@ def _look_from_cells(code, columns, light, number, n, scratch):
     span = scratch[SPAN]
     column = scratch[COLUMN]
     measure = scratch[MEASURE]
+    rarity = scratch[RARITY]
     cosines = scratch[COS_AZIMUTH]
     sines = scratch[SIN_AZIMUTH]
     shares = scratch[SHARE]
@@ -155,7 +172,10 @@ def _look_from_cells(code, columns, light, number, n, scratch):
         heights[i] = vz if above else 1.0
     for i in range(n):
         sines[i], cosines[i] = sincos_turns(coordinate(azimuth_shift[i], number, STEPS[2]))
-        shares[i] = coordinate(share_shift[i], number, STEPS[3])
+        # Far facets have shares near 1, which a facet must not reach.
+        rest = 1.0 - coordinate(share_shift[i], number, STEPS[3])
+        shares[i] = min(1.0 - rest * rest, LARGEST_SHARE)
+        rarity[i] = 2.0 * rest
 
 
 @stage
@@ -221,16 +241,29 @@ def _add_up(tau, n, scratch, sums):
 
 
 @stage
-def _add_to_cells(tau, start, n, scratch, sums):
+def _keep_flat(tau, n, scratch, flat):
+    gain = scratch[GAIN]
+    path = scratch[PATH]
+    for c in range(tau.shape[0]):
+        row = flat[c]
+        for i in range(n):
+            row[i] = gain[i] * transmittance(tau[c], path[i])
+
+
+@stage
+def _add_to_cells(tau, start, n, scratch, flat, sums):
     gain = scratch[GAIN]
     path = scratch[PATH]
     measure = scratch[MEASURE]
+    rarity = scratch[RARITY]
     for c in range(tau.shape[0]):
         depth = tau[c]
+        usual = flat[c]
         row = sums[c][start : start + n]
         if depth > 0.0:
             for i in range(n):
-                row[i] += measure[i] * gain[i] * transmittance(depth, path[i])
+                unusual = gain[i] * transmittance(depth, path[i]) - usual[i]
+                row[i] += measure[i] * (usual[i] + rarity[i] * unusual)
         else:
             for i in range(n):
-                row[i] += measure[i] * gain[i]
+                row[i] += measure[i] * (usual[i] + rarity[i] * (gain[i] - usual[i]))

@@ -69,7 +69,9 @@ class Connection:
         """Bytes shared by all threads, and of a workspace."""
         plan = self.plan
         cells = plan.rows * self.per_row
-        return 0, 8 * (N_SCRATCH * BLOCK + 2 * cells + plan.n_distinct * (2 * cells + plan.rows * plan.width))
+        return 0, 8 * (
+            (N_SCRATCH + plan.n_distinct) * BLOCK + 2 * cells + plan.n_distinct * (2 * cells + plan.rows * plan.width)
+        )
 
     def workspace(self):
         """Scratch arrays of one thread."""
@@ -90,6 +92,7 @@ class Workspace:
         self.plan = plan
         self.per_row = per_row
         self.scratch = np.empty((N_SCRATCH, BLOCK))
+        self.flat = np.empty((plan.n_distinct, BLOCK))
         self.interface = (float(plan.alphas[0]), float(plan.etas[0]))
 
     def run(self, direction, size, keys, out, stop):
@@ -173,7 +176,8 @@ class Workspace:
                 if stop.is_set():
                     return None
                 n = min(deep, draws - first)
-                look(self.interface, plan.taus[0], slices, cells, start, end, first, n, key, self.scratch, sums)
+                place = (start, end, first, n)
+                look(self.interface, plan.taus[0], slices, cells, *place, key, self.scratch, self.flat, sums)
         found = np.zeros((plan.n_distinct, plan.rows * self.per_row))
         # In solid angle of the axis: twice the step of the squared sine, times the step of the azimuth.
         area = module.AXIS_JACOBIAN * 2.0 * (2.0 * math.pi / plan.columns)

@@ -1,4 +1,4 @@
-"""Operators: a walk bins what arrives at a wide interface, whose BSDF is then applied to the bins for all cells at once.
+"""Operators: a walk bins what arrives at a wide interface, whose BSDF is then applied to all cells at once.
 
 Every arrival meets every cell, so that a few thousand light paths do the work of 10^9. The nodes leave a bias of the
 fourth order in their distance, which `Operator.coarse_minus_fine` measures.
@@ -6,17 +6,12 @@ fourth order in their distance, which `Operator.coarse_minus_fine` measures.
 
 import numpy as np
 
-from ...optics.random import uniform
-from ..lattice import DIMENSIONS
 from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals, waiting_rays
 from ..operators.blas import one_thread
 from ..operators.choice import IN, choose, inner_index
 from ..operators.gather import POINTS, gather
-from ..unit import child_key
 
-# Children of a replicate's key.
-SHIFTS, PATHS, CELLS = range(3)
 # Light paths between two looks at `stop`: some tens of milliseconds.
 PATHS_PER_CALL = 1 << 13
 # In the time of one event of the analog walk: of an event here, of a point of a cell, and multiplications.
@@ -33,7 +28,7 @@ class Operator:
     sides : tuple of int
         One way out, see `refusal`.
     fine : int
-        Nodes per degree; even.
+        Nodes per degree.
     """
 
     name = "operator"
@@ -155,9 +150,7 @@ class Workspace:
 
     def _walk(self, direction, size, key, stop, stride):
         variant = self.operator.variant
-        shifts = np.array([_shift(child_key(key, SHIFTS), d) for d in range(DIMENSIONS)])
         target = np.array([variant.interface, variant.from_below, self.operator.ahead, stride])
-        paths = child_key(key, PATHS)
         light = self.operator.plan.light[direction]
         self.bins[...] = 0.0
         events = 0
@@ -165,7 +158,7 @@ class Workspace:
             if stop is not None and stop.is_set():
                 return None
             last = min(size, first + PATHS_PER_CALL)
-            events += bin_arrivals(self.stack, light, target, first, last, shifts, paths, self.waiting, self.bins)
+            events += bin_arrivals(self.stack, light, target, first, last, key, self.waiting, self.bins)
         return events
 
     def _take(self, r, arrivals, size):
@@ -195,11 +188,7 @@ class Workspace:
             self.exits,
             self.source,
             plan.taus[0],
-            child_key(key, CELLS),
+            key,
             out.reshape(radiance.shape[2], -1),
         )
         return POINT * POINTS * plan.rows * plan.width
-
-
-def _shift(key, dimension):
-    return uniform(key, dimension)

@@ -46,28 +46,33 @@ class Application:
         plan, variant = self.plan, self.variant
         k = variant.interface
         self.matrix = cosines(2 * self.nodes)
+        first = self._table(self.groups, self.rows[0])
         if self.conductor:
-            pairs = zip(plan.spectral[k, ETA], plan.spectral[k, KAPPA], strict=True)
-            found = np.stack([self._kernel(kernels.CONDUCTOR, k, *pair, self.rows[0]) for pair in pairs])
+            for c in range(self.groups):
+                eta, kappa = plan.spectral[k, ETA, c], plan.spectral[k, KAPPA, c]
+                self._tabulate(kernels.CONDUCTOR, k, eta, kappa, self.rows[0], first[c])
         else:
             event = kernels.TRANSMISSION if variant.leaves == OUT else kernels.INTERNAL
-            found = self._kernel(event, k, inner_index(plan, k), 0.0, self.rows[0])[None]
-        self.kernels = [found]
+            self._tabulate(event, k, inner_index(plan, k), 0.0, self.rows[0], first[0])
+        self.kernels = [first]
         if variant.leaves == THROUGH:
+            second = self._table(1, self.rows[1])
             eta = inner_index(plan, variant.exit)
-            found = self._kernel(kernels.TRANSMISSION, variant.exit, eta, 0.0, self.rows[1])
+            self._tabulate(kernels.TRANSMISSION, variant.exit, eta, 0.0, self.rows[1], second[0])
             # The exit sees light come from where it does not go.
-            found[1::2] *= -1.0
-            self.kernels.append(found[None])
+            second[:, 1::2] *= -1.0
+            self.kernels.append(second)
             self.toll = self._toll()
         if self.sums_cells:
             self.to_azimuths = cells.column_matrix(plan, self.nodes, at_azimuths)
         else:
             self.to_azimuths = at_azimuths(2 * self.nodes, np.arange(2 * self.nodes + 1))
 
-    def _kernel(self, event, k, eta, kappa, rows):
-        alpha = float(self.plan.alphas[k])
-        return kernels.coefficients(event, alpha, float(eta), float(kappa), self.nodes, rows, self.matrix)
+    def _table(self, groups, rows):
+        return np.empty((groups, 2 * self.nodes + 1, len(rows), self.nodes + 1))
+
+    def _tabulate(self, event, k, eta, kappa, rows, found):
+        kernels.coefficients(event, float(self.plan.alphas[k]), float(eta), float(kappa), rows, self.matrix, found)
 
     def _toll(self):
         """Quadrature weights of the nodes for a cosine-weighted integral, with what the way to the exit leaves.
@@ -101,7 +106,10 @@ class Application:
         return space[0].reshape(shape)
 
     def apply(self, space):
-        """What leaves, in the layout of `arrivals`: azimuths or columns, polar angles or rows. ``space`` is overwritten."""
+        """What leaves, in the layout of `arrivals`, with azimuths or columns, and polar angles or rows.
+
+        ``space`` is overwritten, and holds what is returned.
+        """
         there, here = space
         there = there.reshape(self.groups, 2 * self.nodes + 1, -1)
         here = here.reshape(there.shape)

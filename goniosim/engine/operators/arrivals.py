@@ -4,8 +4,6 @@ Light enters for certain. At inner interfaces both branches are followed: a coin
 an outermost interface lets through is not followed.
 """
 
-import math
-
 import numpy as np
 
 from ..._jit import kernel, stage
@@ -21,6 +19,8 @@ from ..stages.smooth_conductor import ETA, KAPPA
 from .facets import meet_facet
 from .nodes import deposit
 
+# Children of a replicate's key: the shifts of its lattice, its paths.
+SHIFTS, PATHS = 0, 1
 # A ray that would be fainter than this, had its facets been drawn from plain distributions, plays Russian roulette.
 FAINT = 0.01
 # Rays of one path that may wait. If there is no room for both branches, a coin with fair weights chooses one.
@@ -41,7 +41,7 @@ def waiting_rays(plan, room=WAITING):
 
 
 @kernel
-def bin_arrivals(stack, light, target, first, last, shifts, paths_key, waiting, bins):
+def bin_arrivals(stack, light, target, first, last, key, waiting, bins):
     """Trace paths ``first`` to ``last - 1`` of a replicate and spread what arrives over the nodes.
 
     Parameters
@@ -52,9 +52,8 @@ def bin_arrivals(stack, light, target, first, last, shifts, paths_key, waiting, 
     target : ndarray of int64, shape (4,)
         The interface; 1 if light arrives at it from below; number of the order that a path has if it leaves without
         another event on the top interface, less its order on arrival; every ``stride``-th node is used.
-    shifts : ndarray, shape (DIMENSIONS,)
-        Of the replicate's lattice.
-    paths_key : uint64
+    key : uint64
+        Of the replicate.
     waiting : ndarray
         As `waiting_rays` makes it.
     bins : ndarray, shape (slots, azimuths, polar angles, channels)
@@ -65,54 +64,42 @@ def bin_arrivals(stack, light, target, first, last, shifts, paths_key, waiting, 
     int
         Ray-interface events.
     """
-    kinds, alphas, etas, spectral, taus, absorbs = stack
-    channels = bins.shape[3]
-    weight = np.empty(channels)
+    ray = np.empty(waiting.shape[1])
+    shifts = np.empty(DIMENSIONS)
+    shifts_key = derive_key(key, SHIFTS)
+    for dimension in range(DIMENSIONS):
+        shifts[dimension] = uniform(shifts_key, dimension)
+    paths_key = derive_key(key, PATHS)
     events = 0
     for number in range(first, last):
-        key = derive_key(paths_key, number)
-        n = _enter(light, alphas[0], etas[0], shifts, number, waiting)
-        events += 1
+        path_key = derive_key(paths_key, number)
+        n = _enter(light, stack, shifts, number, waiting)
         met = 0
         while n > 0 and met < MOST_EVENTS:
             n -= 1
-            ray = waiting[n]
-            k = int(ray[INTERFACE])
-            downwards = ray[DOWNWARDS] > 0.0
-            x = ray[X]
-            y = ray[Y]
-            z = max(ray[Z], _LEAST_COSINE)
-            ratio = ray[RATIO]
-            order = ray[ORDER]
-            for c in range(channels):
-                weight[c] = ray[WEIGHT + c]
-            medium = k - 1 if downwards else k
-            if absorbs[medium]:
-                path = path_length(z)
-                for c in range(channels):
-                    weight[c] *= transmittance(taus[medium, c], path)
-            if k == target[0] and downwards == (target[1] == 0):
-                slot = min(max(int(order) + target[2], 0), bins.shape[0] - 1)
-                deposit(x, y, z, weight, ratio, target[3], bins[slot])
+            for field in range(ray.shape[0]):
+                ray[field] = waiting[n, field]
+            _arrive(ray, stack, target, bins)
             counter = met * _DRAWS
-            u1 = uniform(key, counter)
-            u2 = uniform(key, counter + 1)
-            u3 = uniform(key, counter + 2)
+            u1 = uniform(path_key, counter)
+            u2 = uniform(path_key, counter + 1)
+            u3 = uniform(path_key, counter + 2)
             if met == 0:
                 u1 = coordinate(shifts[3], number, STEPS[3])
                 u2 = coordinate(shifts[4], number, STEPS[4])
                 u3 = coordinate(shifts[5], number, STEPS[5])
             met += 1
-            n = _scatter(
-                x, y, z, weight, ratio, order, k, downwards, kinds, alphas, etas, spectral, u1, u2, u3, key, counter + 3,
-                waiting, n,
-            )  # fmt: skip
-        events += met
+            n = _scatter(ray, stack, u1, u2, u3, path_key, counter + 3, waiting, n)
+        events += met + 1
     return events
 
 
 @stage
-def _enter(light, alpha, eta, shifts, number, waiting):
+def _enter(light, stack, shifts, number, waiting):
+    """Put the ray that has entered the stack on the pile; returns the height of the pile."""
+    _, alphas, etas, _, _, _ = stack
+    alpha = alphas[0]
+    eta = etas[0]
     u1 = coordinate(shifts[0], number, STEPS[0])
     u2 = coordinate(shifts[1], number, STEPS[1])
     u3 = coordinate(shifts[2], number, STEPS[2])
@@ -131,81 +118,97 @@ def _enter(light, alpha, eta, shifts, number, waiting):
     ray[DOWNWARDS] = 1.0
     ray[ORDER] = 1.0
     gain = dielectric_transmittance(cosine, eta) * smith_g1(ray[Z], alpha)
-    for c in range(ray.shape[0] - WEIGHT):
-        ray[WEIGHT + c] = gain
+    for field in range(WEIGHT, ray.shape[0]):
+        ray[field] = gain
     return 1 if gain > 0.0 else 0
 
 
 @stage
-def _scatter(
-    x, y, z, weight, ratio, order, k, downwards, kinds, alphas, etas, spectral, u1, u2, u3, key, counter, waiting, n
-):  # fmt: skip
-    """Put what leaves an interface within the stack on the pile of rays that wait; returns the height of the pile."""
+def _arrive(ray, stack, target, bins):
+    """Absorb what the way to the interface costs, and count the ray if it is the one in question."""
+    _, _, _, _, taus, absorbs = stack
+    k = int(ray[INTERFACE])
+    downwards = ray[DOWNWARDS] > 0.0
+    ray[Z] = max(ray[Z], _LEAST_COSINE)
+    medium = k - 1 if downwards else k
+    if absorbs[medium]:
+        path = path_length(ray[Z])
+        for c in range(bins.shape[3]):
+            ray[WEIGHT + c] *= transmittance(taus[medium, c], path)
+    if k == target[0] and downwards == (target[1] == 0):
+        slot = min(int(ray[ORDER]) + target[2], bins.shape[0] - 1)
+        deposit(ray[X], ray[Y], ray[Z], ray[WEIGHT:], ray[RATIO], target[3], bins[slot])
+    ray[ORDER] += 1.0 if k == 0 else 0.0
+
+
+@stage
+def _scatter(ray, stack, u1, u2, u3, key, counter, waiting, n):
+    """Put what an interface sends back into the stack on the pile; returns the height of the pile."""
+    kinds, alphas, etas, spectral, _, _ = stack
+    k = int(ray[INTERFACE])
     kind = kinds[k]
-    dielectric = kind in (ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC)
-    alpha = alphas[k]
-    order += 1.0 if k == 0 else 0.0
+    u = uniform(key, counter)
     if kind == LAMBERT:
-        ox, oy, oz = sample_cosine(u1, u2)
-        n = _keep(
-            ox, oy, oz, 1.0, 0.0, weight, kind, spectral[k], ratio, order, k, downwards, False, uniform(key, counter), waiting, n
-        )  # fmt: skip
-        return n
-    eta = etas[k] if downwards else 1.0 / etas[k]
-    mx, my, mz, facet_ratio = meet_facet(x, y, z, alpha, u1, u2, u3)
-    ratio *= facet_ratio
+        x, y, z = sample_cosine(u1, u2)
+        return _keep(ray, x, y, z, 1.0, 0.0, False, kind, spectral[k], u, waiting, n)
+    x = ray[X]
+    y = ray[Y]
+    z = ray[Z]
+    alpha = alphas[k]
+    eta = etas[k] if ray[DOWNWARDS] > 0.0 else 1.0 / etas[k]
+    mx, my, mz, ratio = meet_facet(x, y, z, alpha, u1, u2, u3)
+    ray[RATIO] *= ratio
     cosine = min(1.0, max(0.0, x * mx + y * my + z * mz))
     reflectance, cos_t = fresnel_dielectric(cosine, eta)
+    passes = 1.0 - reflectance
+    dielectric = kind in (ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC)
+    # What an outermost interface lets through is not followed, and a conductor's reflectance is that of each channel.
     inner = dielectric and 0 < k < kinds.shape[0] - 1
-    both = n + 2 <= waiting.shape[0]
-    reflects = (not inner) or both or uniform(key, counter + 2) < reflectance
-    if reflects:
-        along = 2.0 * cosine
-        oz = along * mz - z
-        gain = smith_g1(oz, alpha) * ((reflectance if both or not inner else 1.0) if dielectric else 1.0)
-        n = _keep(
-            x - along * mx, y - along * my, oz, gain, cosine, weight, kind, spectral[k], ratio, order, k, downwards, False,
-            uniform(key, counter), waiting, n,
-        )  # fmt: skip
-    if inner and (both or not reflects):
+    reflectance = reflectance if dielectric else 1.0
+    if inner and n + 2 > waiting.shape[0]:
+        reflectance = 1.0 if uniform(key, counter + 2) < reflectance else 0.0
+        passes = 1.0 - reflectance
+    along = 2.0 * cosine
+    oz = along * mz - z
+    gain = reflectance * smith_g1(oz, alpha)
+    n = _keep(ray, x - along * mx, y - along * my, oz, gain, cosine, False, kind, spectral[k], u, waiting, n)
+    if inner:
         along = cosine / eta - cos_t
         oz = z / eta - along * mz
-        gain = smith_g1(oz, alpha) * (1.0 - reflectance if both else 1.0)
-        n = _keep(
-            x / eta - along * mx, y / eta - along * my, oz, gain, cosine, weight, kind, spectral[k], ratio, order, k, downwards,
-            True, uniform(key, counter + 1), waiting, n,
-        )  # fmt: skip
+        gain = passes * smith_g1(oz, alpha)
+        ox = x / eta - along * mx
+        oy = y / eta - along * my
+        u = uniform(key, counter + 1)
+        n = _keep(ray, ox, oy, oz, gain, cosine, True, kind, spectral[k], u, waiting, n)
     return n
 
 
 @stage
-def _keep(
-    x, y, z, gain, cosine, weight, kind, spectral, ratio, order, k, downwards, through, u, waiting, n
-):  # fmt: skip
-    """One ray onto the pile, unless it ended or lost at roulette."""
+def _keep(ray, x, y, z, gain, cosine, through, kind, spectral, u, waiting, n):
+    """One ray onto the pile, unless it ended or lost at roulette; returns the height of the pile."""
     if z <= 0.0 or gain <= 0.0:
         return n
-    ray = waiting[n]
+    kept = waiting[n]
     brightest = 0.0
-    for c in range(weight.shape[0]):
-        f = gain * weight[c]
+    for c in range(spectral.shape[1]):
+        weight = gain * ray[WEIGHT + c]
         if kind == LAMBERT:
-            f *= spectral[RHO, c]
+            weight *= spectral[RHO, c]
         elif kind in (ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR):
-            f *= fresnel_conductor(cosine, spectral[ETA, c], spectral[KAPPA, c])
-        ray[WEIGHT + c] = f
-        brightest = max(brightest, f)
+            weight *= fresnel_conductor(cosine, spectral[ETA, c], spectral[KAPPA, c])
+        kept[WEIGHT + c] = weight
+        brightest = max(brightest, weight)
     survival = min(1.0, brightest / FAINT)
     if u >= survival:
         return n
-    for c in range(weight.shape[0]):
-        ray[WEIGHT + c] /= survival
-    down = downwards == through
-    ray[X] = x
-    ray[Y] = y
-    ray[Z] = z
-    ray[RATIO] = ratio
-    ray[INTERFACE] = k + 1.0 if down else k - 1.0
-    ray[DOWNWARDS] = 1.0 if down else -1.0
-    ray[ORDER] = order
+    for c in range(spectral.shape[1]):
+        kept[WEIGHT + c] /= survival
+    down = (ray[DOWNWARDS] > 0.0) == through
+    kept[X] = x
+    kept[Y] = y
+    kept[Z] = z
+    kept[RATIO] = ray[RATIO]
+    kept[INTERFACE] = ray[INTERFACE] + (1.0 if down else -1.0)
+    kept[DOWNWARDS] = 1.0 if down else -1.0
+    kept[ORDER] = ray[ORDER]
     return n + 1

@@ -42,7 +42,7 @@ def to_coefficients(matrix, values, found):
 
 
 def at_azimuths(nodes, azimuths):
-    """The matrix from products of coefficients to values at ``azimuths``, in units of node distances; for `to_values`."""
+    """The matrix from products of coefficients to values at ``azimuths`` (in node distances), for `to_values`."""
     turns = np.multiply.outer(np.asarray(azimuths, float), np.arange(nodes + 1)) % (2 * nodes)
     return np.cos(np.pi / nodes * turns) * (end_weights(nodes) / (2 * nodes))
 

@@ -22,6 +22,8 @@ from ..lattice import coordinate
 from .nodes import interpolate
 
 POINTS = 4
+# Which child of a replicate's key draws the points.
+CELLS = 2
 # Share of the facets that is the tail, and how its points are drawn: 1 - u = TAIL t^3, of weight 3 t^2.
 TAIL = 0.02
 _LEAST_TAIL = 1e-12
@@ -46,6 +48,7 @@ def gather(values, stride, parametrization, rows, columns, light, exits, source,
     taus : ndarray, shape (channels,)
         Optical depths before the exit.
     key : uint64
+        Of the replicate.
     out : ndarray, shape (n, rows * width)
     """
     found = np.empty(out.shape[0])
@@ -55,10 +58,11 @@ def gather(values, stride, parametrization, rows, columns, light, exits, source,
     z = np.empty(POINTS)
     measure = np.empty(POINTS)
     width = out.shape[1] // rows
+    cells_key = derive_key(key, CELLS)
     for cell in range(out.shape[1]):
         for e in range(out.shape[0]):
             out[e, cell] = 0.0
-        cell_key = derive_key(key, cell)
+        cell_key = derive_key(cells_key, cell)
         u1 = uniform(cell_key, 0)
         u2 = uniform(cell_key, 1)
         if not _points(parametrization, cell // width, cell % width, rows, columns, light, u1, u2, x, y, z, measure):

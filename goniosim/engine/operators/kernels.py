@@ -10,7 +10,7 @@ from ...optics.fresnel import dielectric_transmittance, fresnel_conductor, fresn
 from ...optics.microfacet import microfacet_reflection, microfacet_transmission
 from .azimuths import end_weights, to_coefficients
 
-# What happens at the interface: light from inside leaves, or is reflected by a conductor or from inside by a dielectric.
+# What happens to light from inside: it leaves, or is reflected by a conductor or by a dielectric.
 TRANSMISSION, CONDUCTOR, INTERNAL = range(3)
 
 # Node at grazing angles, so that nothing is divided by zero.
@@ -21,7 +21,7 @@ _LEAST_FACET = 1e-5
 BLOCK = 15
 
 
-def coefficients(event, alpha, eta, kappa, nodes, rows, matrix):
+def coefficients(event, alpha, eta, kappa, rows, matrix, found):
     """Coefficients of a kernel, for rows that are weighted sums over the nodes of the outgoing polar angle.
 
     Parameters
@@ -29,18 +29,14 @@ def coefficients(event, alpha, eta, kappa, nodes, rows, matrix):
     event : int
     alpha, eta, kappa : float
         Width; index inside over outside of a dielectric, or the relative index of a conductor.
-    nodes : int
-        Intervals of the polar angle in 90 degrees; twice as many of the azimuth in 180.
     rows : goniosim.engine.operators.cells.Rows
     matrix : ndarray
         As `azimuths.cosines` yields it.
-
-    Returns
-    -------
-    ndarray, shape (2 nodes + 1, number of rows, nodes + 1)
+    found : ndarray, shape (2 nodes + 1, number of rows, nodes + 1)
+        Overwritten; for ``nodes`` distances in 90 degrees.
     """
+    nodes = found.shape[2] - 1
     matrix = matrix * end_weights(2 * nodes)
-    found = np.empty((2 * nodes + 1, len(rows), nodes + 1))
     table = np.empty((2 * nodes + 1, rows.nodes_of(BLOCK), nodes + 1))
     for first in range(0, len(rows), BLOCK):
         count = min(BLOCK, len(rows) - first)
@@ -50,7 +46,6 @@ def coefficients(event, alpha, eta, kappa, nodes, rows, matrix):
         answer = np.empty((len(block), count * (nodes + 1)))
         to_coefficients(matrix, block.reshape(len(block), -1), answer)
         found[:, first : first + count] = answer.reshape(len(block), count, -1)
-    return found
 
 
 @kernel

@@ -1,7 +1,8 @@
 """Nodes in polar angle and folded azimuth, with cubic Lagrange weights for what lies between them.
 
-Node (j, i) stands at the azimuth j h and the polar angle i h: ``bins[j, i, channel]``. Stencils have 4 x 4 nodes, one-sided
-at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2 they use every second node.
+Node (j, i) stands at the azimuth j h and the polar angle i h: ``bins[j, i, channel]``. Stencils have 4 x 4 nodes,
+one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2 they use every second
+node.
 """
 
 import math

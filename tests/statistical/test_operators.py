@@ -1,0 +1,144 @@
+"""Operators against the analog engine, and what their replicates must have in common."""
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from goniosim.engine import simulate
+from goniosim.engine.estimators.operator import Operator
+from goniosim.engine.layout import DOWN, UP
+from goniosim.engine.plan import make_plan
+from goniosim.engine.unit import child_key
+from reference.operators import deviations, energies
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+
+# Wide lobes, for which nodes a degree apart are enough, and few cells, so that the tests take no time.
+FINE = 1
+TAU = medium([0.05, 0.1, 0.8])
+METAL = [dielectric(1.5, 0.3), TAU, conductor(1.45, [1.0, 0.5, 0.5], 0.3)]
+SLAB = [dielectric(1.5, 0.3), TAU, dielectric(1.0, 0.001)]
+CASES = {
+    "out": (METAL, UP, "classic"),
+    "through": ([dielectric(1.8, 0.09), *METAL[1:]], UP, "classic"),
+    "in": ([dielectric(1.5, 0.001), *METAL[1:]], UP, "half"),
+    "in from the top": (SLAB, DOWN, "half"),
+    "smooth in between": ([METAL[0], medium(0.1), dielectric(1.8), TAU, dielectric(1.33, 0.3)], DOWN, "classic"),
+}
+COMPONENT = {UP: "reflection/internal", DOWN: "transmission"}
+
+
+def operator_of(case, theta=40.0, rows=9, columns=36, orders=None, fine=FINE):
+    layers, side, parametrization = CASES[case]
+    simulation = {"orders": orders} if orders else {}
+    scene = make_scene(layers, theta, parametrization, rows, columns, **simulation)
+    made = Operator(make_plan(scene), (side,), fine)
+    made.prepare()
+    return scene, made
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_agrees_with_the_analog_engine(case):
+    """Three channels of blocks: none beyond 5 sigma, and the totals within 4; false-alarm rate 2e-4 a case."""
+    scene, made = operator_of(case)
+    assert made.variant.leaves == case.split()[0] if "between" not in case else made.variant.interface == 2
+    component = simulate(scene, rays=400_000, seed=3).components[COMPONENT[CASES[case][1]]]
+    z, totals = deviations(made, [component], energies(made, 1024, 32, seed=1), 400_000)
+    assert z.size > 15
+    assert np.abs(z).max() < 5.0
+    assert np.abs(totals).max() < 4.0
+
+
+def test_orders_add_up_and_agree():
+    """To the last digits but a few; each order agrees with the analog engine's as above."""
+    scene, made = operator_of("in from the top", orders=2)
+    _, whole = operator_of("in from the top")
+    parts = energies(made, 1024, 32, seed=2)
+    assert parts.shape[1] == 3
+    assert parts.sum(axis=1) == pytest.approx(energies(whole, 1024, 32, seed=2)[:, 0], rel=1e-9, abs=1e-14)
+    component = simulate(scene, rays=400_000, seed=4).components["transmission"]
+    for slot, order in enumerate(component.orders.values()):
+        z, totals = deviations(made, [order], parts[:, slot : slot + 1], 400_000)
+        assert np.abs(z).max() < 5.0 and np.abs(totals).max() < 4.0
+
+
+def test_threads_do_not_change_the_bits():
+    """Whatever runs beside a chunk, and whatever ran in its workspace before."""
+    _, made = operator_of("in", 30.0)
+    keys = [[child_key(seed, i) for i in range(8)] for seed in range(4)]
+
+    def run(some, workspace=None):
+        out = np.empty((8, 1, 3, 9, 18))
+        events = (workspace or made.workspace()).run(0, 600, some, out, threading.Event())
+        return out, events
+
+    one = made.workspace()
+    serial = [run(some, one) for some in keys]
+    with ThreadPoolExecutor(2) as pool:
+        parallel = list(pool.map(run, keys))
+    for (a, events), (b, again) in zip(serial, parallel, strict=True):
+        assert np.array_equal(a, b) and events == again > 600 * 8
+
+
+def test_fewer_replicates_than_a_chunk_and_odd_columns():
+    """Odd columns are not folded; a slice is its own mirror image."""
+    _, made = operator_of("out", columns=15)
+    workspace = made.workspace()
+    out = np.empty((3, 1, 3, 9, 15))
+    workspace.run(0, 4000, [child_key(1, i) for i in range(3)], out, None)
+    _, folded = operator_of("out", columns=30)
+    pairs = energies(folded, 4000, 3, seed=1)[:, 0]
+    assert out[..., 8:].sum() == pytest.approx(out[..., :7].sum(), rel=0.01)
+    assert out.sum() == pytest.approx(2.0 * pairs.sum(), rel=0.01)
+
+
+def test_cells_by_points_and_by_nodes_agree():
+    """A grid that the nodes do not fit takes four points of each cell: the same light to 1 %, from the same paths."""
+    _, fits = operator_of("out", rows=9, columns=36)
+    _, points = operator_of("out", rows=10, columns=35)
+    assert fits.application.sums_cells and not points.application.sums_cells
+    a, b = (
+        2.0 * energies(fits, 2000, 8, seed=1).sum(axis=(1, 3, 4)),
+        energies(points, 2000, 8, seed=1).sum(axis=(1, 3, 4)),
+    )
+    assert a.mean(axis=0) == pytest.approx(b.mean(axis=0), rel=0.01)
+
+
+def test_a_stop_gives_up():
+    _, made = operator_of("out")
+    stop = threading.Event()
+    stop.set()
+    assert made.workspace().run(0, 1 << 20, [child_key(1, 1)], np.empty((1, 1, 3, 9, 18)), stop) is None
+
+
+def test_coarse_nodes_tell_the_bias():
+    """The difference is small and shrinks with the distance; the fine estimate is that of `run`."""
+    norms = []
+    for fine in (1, 2):
+        _, made = operator_of("out", fine=fine)
+        coarse, found = made.coarse_minus_fine(0, 500, [child_key(1, i) for i in range(8)])
+        assert np.array_equal(found, energies(made, 500, 8, seed=1))
+        norms.append(np.linalg.norm((coarse - found).mean(axis=0)) / np.linalg.norm(found.mean(axis=0)))
+    assert 0.0 < 1.8 * norms[1] < norms[0] < 1e-3
+
+
+def test_memory_is_told_from_shapes():
+    for case in ("through", "in", "out"):
+        _, made = operator_of(case)
+        shared, own = made.memory
+        kept = sum(kernel.nbytes for kernel in made.application.kernels)
+        assert kept < shared
+        workspace = made.workspace()
+        arrays = [*workspace.space, workspace.bins]
+        assert sum(array.nbytes for array in arrays) < own < 3.0 * sum(array.nbytes for array in arrays)
+
+
+def test_lambertian_base_under_a_wide_top():
+    """Total against the analog engine within 4.5 sigma, false alarm 7e-6."""
+    scene = make_scene([dielectric(1.5, 0.3), lambert(0.6)], 70.0, rows=9, columns=36)
+    made = Operator(make_plan(scene), (UP,), FINE)
+    made.prepare()
+    component = simulate(scene, rays=400_000, seed=5).components["reflection/internal"]
+    _, totals = deviations(made, [component], energies(made, 1024, 32, seed=3), 400_000)
+    assert np.abs(totals).max() < 4.5
