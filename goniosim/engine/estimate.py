@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from ..result import AUDIT_ENTRIES, Audit, Cells, Component
+from ..effective import uncertain
+from ..result import AUDIT_ENTRIES, INTEGRATED, Audit, Cells, Component
+from ..sums import Paths, sum_and_error
 from .layout import DOWN, UP
 
 COMPONENT_OF = {UP: "reflection/internal", DOWN: "transmission"}
@@ -47,24 +49,77 @@ def to_bsdf(energy, geometry):
     return np.divide(energy, geometry.projected_solid_angle, out=np.zeros_like(energy), where=valid)
 
 
-def _assemble(plan, slices, sampled, contains_delta):
-    """A `Component` from energy, stderr and hits (None if not sampled) per direction on the distinct channels.
+def direction_noise(stderr, geometry, weights):
+    """Noise floor of one direction: see `goniosim.result.Cost.error`.
 
+    Parameters
+    ----------
+    stderr : ndarray, shape (distinct channels, rows, columns)
+        Of the energy, whatever the estimator.
+    geometry : goniosim.slices.Geometry
+    weights : ndarray, shape (distinct channels,)
+        From `channel_weights`.
+
+    Returns
+    -------
+    float
+    """
+    squared = to_bsdf(stderr, geometry) ** 2 * geometry.projected_solid_angle
+    return float(np.sqrt(squared.sum(axis=(1, 2))) @ weights)
+
+
+def channel_weights(plan):
+    """Share of each distinct channel in the mean over all: one that stands for several counts as often."""
+    return np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
+
+
+def shared_seconds(elapsed, cpu_seconds):
+    """Elapsed time shared out among the directions, between checkpoints in proportion to their processor time.
+
+    Parameters
+    ----------
+    elapsed : ndarray, shape (P,)
+    cpu_seconds : ndarray, shape (M, P)
+
+    Returns
+    -------
+    ndarray, shape (M, P)
+        Its sum over directions is ``elapsed``; never less than at the checkpoint before.
+    """
+    spent = np.diff(cpu_seconds, prepend=0.0, axis=1)
+    total = spent.sum(axis=0)
+    shares = np.divide(spent, total, out=np.full_like(spent, 1.0 / len(spent)), where=total > 0.0)
+    return np.cumsum(shares * np.diff(elapsed, prepend=0.0), axis=1)
+
+
+def _assemble(plan, slices, rays, contains_delta):
+    """A `Component` from energy, stderr and hits per direction on the distinct channels.
+
+    ``rays`` is None for a component that is integrated, whose errors are added; ``hits`` are then of no use.
     ``slices`` may be a generator: of fine slices, only those of one direction are in memory besides the result.
     """
     shape = (len(plan.theta_deg), len(plan.position), plan.rows, plan.columns)
     found = Component(
         *(np.empty(shape) for _ in range(4)),
-        hits=np.empty((shape[0], *shape[2:]), np.int64) if sampled else None,
+        hits=None if rays is None else np.empty((shape[0], *shape[2:]), np.int64),
         contains_delta=contains_delta,
+        uncertain=None if rays is None else np.empty(shape, bool),
+        albedo=np.empty(shape[:2]),
+        albedo_stderr=np.empty(shape[:2]),
+        estimator=[INTEGRATED if rays is None else "analog"] * shape[0],
     )
     for m, (energy, stderr, hits) in enumerate(slices):
         found.energy[m] = energy[plan.position]
         found.stderr[m] = stderr[plan.position]
         found.bsdf[m] = to_bsdf(energy, plan.geometry[m])[plan.position]
         found.bsdf_stderr[m] = to_bsdf(stderr, plan.geometry[m])[plan.position]
-        if sampled:
+        if rays is None:
+            value, error = energy.sum(axis=(1, 2)), stderr.sum(axis=(1, 2))
+        else:
             found.hits[m] = hits
+            found.uncertain[m] = uncertain(energy, stderr, rays[m])[plan.position]
+            value, error = sum_and_error(energy, stderr, Paths(energy, rays[m]))
+        found.albedo[m], found.albedo_stderr[m] = value[plan.position], error[plan.position]
     return found
 
 
@@ -74,7 +129,7 @@ def _sampled(plan, tallies, rays, first, count, contains_delta):
             total, squares, hits = moments(tally.histogram, plan, first, count)
             yield *mean_and_error(total, squares, n), hits
 
-    return _assemble(plan, slices(), True, contains_delta)
+    return _assemble(plan, slices(), rays, contains_delta)
 
 
 def components(plan, tallies, rays, direct):
@@ -94,7 +149,7 @@ def components(plan, tallies, rays, direct):
     -------
     dict of str to goniosim.result.Component
     """
-    found = {"reflection/direct": _assemble(plan, ((*pair, None) for pair in direct), False, bool(plan.mirrors[0]))}
+    found = {"reflection/direct": _assemble(plan, ((*pair, None) for pair in direct), None, bool(plan.mirrors[0]))}
     for side, name in COMPONENT_OF.items():
         first, count, lowest = (int(value) for value in plan.slots[side])
         if count == 0:
@@ -109,16 +164,15 @@ def components(plan, tallies, rays, direct):
 
 
 def noise(plan, tallies, rays, side):
-    """Noise floor of a component: see `goniosim.result.Cost.error`."""
+    """Noise floor of a component in each direction, shape (M,): see `goniosim.result.Cost.error`."""
     first, count, _ = (int(value) for value in plan.slots[side])
-    # A channel that stands for several counts as often.
-    weights = np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
-    total = np.zeros(plan.n_distinct)
-    for tally, n, geometry in zip(tallies, rays, plan.geometry, strict=True):
-        stderr = mean_and_error(*moments(tally.histogram, plan, first, count)[:2], n)[1]
-        variance = to_bsdf(stderr, geometry) ** 2 * geometry.projected_solid_angle
-        total += variance.sum(axis=(1, 2))
-    return float(np.sqrt(total / len(plan.theta_deg)) @ weights)
+    weights = channel_weights(plan)
+    return np.array(
+        [
+            direction_noise(mean_and_error(*moments(tally.histogram, plan, first, count)[:2], n)[1], geometry, weights)
+            for tally, n, geometry in zip(tallies, rays, plan.geometry, strict=True)
+        ]
+    )
 
 
 def audit(plan, ledgers, part_rays, direct):
@@ -141,8 +195,8 @@ def audit(plan, ledgers, part_rays, direct):
     return Audit(
         energy={name: mean[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
         stderr={name: stderr[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
-        direct_integrated=direct.energy.sum(axis=(2, 3)),
-        direct_integrated_stderr=direct.stderr.sum(axis=(2, 3)),
+        direct_integrated=direct.albedo,
+        direct_integrated_stderr=direct.albedo_stderr,
     )
 
 

@@ -116,7 +116,8 @@ def _needed(plan, rays, threads):
     # A slice for each way out, and one for each order.
     counts = [int(plan.slots[side, 1]) for side in (UP, DOWN)]
     sampled = sum((1 + count if plan.orders else 1) for count in counts if count)
-    slices = (1 + sampled) * 4 * channels + sampled
+    # Four numbers for each channel, hits, and in an eighth of a number whether the cell is uncertain.
+    slices = (1 + sampled) * 4 * channels + sampled + sampled * channels / 8
     # Two numbers and a flag.
     geometry = 2 * _NUMBER + 1
     return Memory(
@@ -128,7 +129,7 @@ def _needed(plan, rays, threads):
         queues=threads * _queues(plan) + 2 * directions * _thresholds(plan),
         # The balance of one direction needs three copies of its ledgers.
         audit=(directions + 3) * ledgers * (N_LEDGER * distinct * _NUMBER + _LEDGER),
-        result=directions * cells * (slices * _NUMBER + geometry),
+        result=int(directions * cells * (slices * _NUMBER + geometry)),
         file=int(_WRITTEN * directions * cells * (slices * _NUMBER + geometry)),
         scratch=cells * (record + 8 * distinct) * _NUMBER,
     )

@@ -111,7 +111,6 @@ class _Run:
     threads: int
     tallies: list = field(init=False)
     checkpoints: list = field(default_factory=list)
-    cpu_seconds: float = 0.0
     seconds: float = 0.0
     events: int = 0
     traced: int = 0
@@ -121,6 +120,7 @@ class _Run:
         self.schedule = Schedule(directions, self.rays_per_direction)
         self.tallies = [Tally(self.plan) for _ in range(directions)]
         self.units = [0] * directions
+        self.cpu_seconds = np.zeros(directions)
         self.ledgers = [[] for _ in range(directions)]
         self.part_rays = [[] for _ in range(directions)]
 
@@ -136,7 +136,7 @@ class _Run:
         """Run all work units, summing their tallies in the order of the schedule."""
         start, cpu_start = time.perf_counter(), time.thread_time()
         faint = faint_weights(self.plan)
-        self.cpu_seconds += time.thread_time() - cpu_start
+        self.cpu_seconds += (time.thread_time() - cpu_start) / len(self.cpu_seconds)
         in_flight = units_in_flight(self.schedule, self.threads)
         spare = [Tally(self.plan) for _ in range(in_flight)]
         local = threading.local()
@@ -198,7 +198,7 @@ class _Run:
             self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
             self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
         self.traced += report.rays
-        self.cpu_seconds += report.cpu_seconds
+        self.cpu_seconds[direction] += report.cpu_seconds
         self.events += report.events
 
     def _checkpoint(self):
@@ -208,14 +208,14 @@ class _Run:
             for side, name in estimate.COMPONENT_OF.items()
             if self.plan.slots[side, 1] > 0
         }
-        self.checkpoints.append((float(np.mean(rays)), self.seconds, self.cpu_seconds, error))
+        self.checkpoints.append((np.array(rays, float), self.seconds, self.cpu_seconds.copy(), error))
 
     def cost(self):
         names = [estimate.COMPONENT_OF[side] for side in (UP, DOWN) if self.plan.slots[side, 1] > 0]
         rays, seconds, cpu_seconds, errors = zip(*self.checkpoints, strict=True)
         return Cost(
-            rays=np.array(rays),
-            seconds=np.array(seconds),
-            cpu_seconds=np.array(cpu_seconds),
-            error={name: np.array([error[name] for error in errors]) for name in names},
+            rays=np.stack(rays, axis=1),
+            seconds=estimate.shared_seconds(np.array(seconds), np.stack(cpu_seconds, axis=1)),
+            cpu_seconds=np.stack(cpu_seconds, axis=1),
+            error={name: np.stack([error[name] for error in errors], axis=1) for name in names},
         )
