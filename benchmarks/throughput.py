@@ -73,7 +73,7 @@ def _three(value):
 def goniosim_rate(name, theta, rays):
     """Rays per CPU-second of the engine, error bars and energy audit included."""
     cost = simulate(scene(name, theta), rays=rays, threads=1).cost
-    return rays / cost.cpu_seconds[-1]
+    return rays / cost.cpu_seconds[0, -1]
 
 
 def reference_rate(name, theta, rays):

@@ -1,14 +1,10 @@
 """Albedos of a result: the share of the incident energy that a component holds, with its standard error."""
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from .errors import UnusableResultError
 from .result import Component, Result
 
-# The audit entry in which a sampled component is booked as a whole.
-SAMPLED_ENTRY = {"reflection/internal": "reflected_internal", "transmission": "transmitted"}
 DIRECT = "reflection/direct"
 REFLECTION = "reflection"
 # As a limit of two standard errors, what may go unseen at 95 % confidence: 3 / rays.
@@ -35,46 +31,50 @@ def albedo(result: Result, name: str | None = None) -> tuple[np.ndarray, np.ndar
     chosen = _chosen(result, name)
     shape = (len(result.theta_deg), len(result.channels))
     value, variance = np.zeros(shape), np.zeros(shape)
+    parts = list(chosen.values())
     if DIRECT in chosen:
-        value += result.audit.direct_integrated
-        variance += result.audit.direct_integrated_stderr**2
-    sampled = [part for part in chosen if part != DIRECT]
-    if sampled:
-        energy, stderr = _sampled(result, sampled, [chosen[part] for part in sampled])
+        value += chosen[DIRECT].albedo
+        variance += chosen[DIRECT].albedo_stderr ** 2
+        parts.remove(chosen[DIRECT])
+    if parts:
+        energy, stderr = _sampled(parts, result.rays)
         value += energy
         variance += stderr**2
     return value, np.sqrt(variance)
 
 
-def _sampled(result: Result, names: list[str], parts: list[Component]) -> tuple[np.ndarray, np.ndarray]:
-    """Sum of sampled components and its standard error; NaN where no ray was traced."""
-    entry = SAMPLED_ENTRY.get(names[0]) if len(names) == 1 else None
-    if entry is not None:
-        energy, stderr = result.audit.energy[entry], result.audit.stderr[entry]
-    else:
-        energy, stderr = _of_paths(parts, result.rays)
-    arrived = np.any([part.hits.any(axis=(1, 2)) for part in parts if part.hits is not None], axis=0)[:, None]
-    rays = result.rays[:, None]
-    stderr = np.where(arrived, stderr, UNSEEN / np.maximum(rays, 1))
-    return np.where(rays > 0, energy, np.nan), np.where(rays > 0, stderr, np.nan)
+def arrived(component: Component) -> np.ndarray:
+    """Whether anything of a sampled component was seen, shape (M, C): paths may arrive with nothing left in a channel."""
+    if component.hits is None:
+        return component.energy.any(axis=(2, 3))
+    return np.broadcast_to(component.hits.any(axis=(1, 2))[:, None], component.energy.shape[:2])
 
 
-def _of_paths(parts: Iterable[Component], rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Sum over cells, and its standard error by the scatter of the paths.
+def _sampled(parts: list[Component], rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of sampled components, none in another, and its standard error; NaN where no ray was traced."""
+    energy = np.sum([part.albedo for part in parts], axis=0)
+    variance = np.sum([part.albedo_stderr**2 for part in parts], axis=0)
+    if len(parts) == 2:
+        for direction, n in enumerate(rays):
+            variance[direction] += _covariance(*parts, direction, int(n))
+    n = rays[:, None]
+    seen = np.any([arrived(part) for part in parts], axis=0)
+    stderr = np.where(seen, np.sqrt(np.maximum(variance, 0.0)), UNSEEN / np.maximum(n, 1))
+    return np.where(n > 0, energy, np.nan), np.where(n > 0, stderr, np.nan)
 
-    A path leaves once, so that the covariance of two cells is - E_i E_j / (rays - 1), and the variance of
-    the sum is that of single cells less (sum E)^2 - sum E^2 over (rays - 1).
-    """
-    energy, squares, variance = (
-        sum(np.sum(values**power, axis=(2, 3)) for values in arrays)
-        for arrays, power in (
-            ([part.energy for part in parts], 1),
-            ([part.energy for part in parts], 2),
-            ([part.stderr for part in parts], 2),
-        )
-    )
-    less = (energy**2 - squares) / np.maximum(rays - 1, 1)[:, None]
-    return np.asarray(energy), np.sqrt(np.maximum(variance - less, 0.0))
+
+def _covariance(one: Component, other: Component, direction: int, rays: int) -> np.ndarray:
+    """Twice the covariance of the sums of two components that may share their paths, shape (C,)."""
+    analog = [part.estimator[direction] == "analog" for part in (one, other)]
+    if all(analog):
+        return -2.0 * one.albedo[direction] * other.albedo[direction] / max(rays - 1, 1)
+    if any(analog):
+        # Each has a run of its own.
+        return np.zeros(one.energy.shape[1])
+    if one.batches is None or other.batches is None:
+        return 2.0 * one.albedo_stderr[direction] * other.albedo_stderr[direction]
+    a, b = (part.batches[direction].sum(axis=(-2, -1)) for part in (one, other))
+    return 2.0 * ((a - a.mean(axis=0)) * (b - b.mean(axis=0))).sum(axis=0) / (len(a) * (len(a) - 1.0))
 
 
 def _chosen(result: Result, name: str | None) -> dict[str, Component]:

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from xarray import DataTree
 
 
+# What stands for an estimator where nothing is sampled.
+INTEGRATED = "integrated"
+
+
 @dataclass(eq=False)
 class Component:
     """One component of the scattered light, as cell averages.
@@ -37,7 +41,21 @@ class Component:
         cell, in 1/sr; zero where the cell is not valid.
     hits : ndarray of int64, shape (M, R, K), or None
         Number of paths that deposited energy in the cell. None for a
-        component that is integrated instead of sampled.
+        component that is integrated instead of sampled, and where an estimator other than ``analog`` was at work.
+    uncertain : ndarray of bool, shape (M, C, R, K), or None
+        Cells whose value and standard error rest on too few paths or replicates, see `goniosim.effective`. None for
+        a component that is not sampled.
+    albedo, albedo_stderr : ndarray, shape (M, C), or None
+        Sum of ``energy`` over the cells, and its standard error with the covariance of the cells, see `goniosim.sums`;
+        0 where nothing arrived, for which `Result.albedo` has a limit. None for a model.
+    estimator : list of str
+        For each direction what made the numbers: ``analog`` and other estimators, or `INTEGRATED`. Empty for a model.
+    node_bias : ndarray, shape (M,), or None
+        What the nodes of an operator may be off by, as a norm like that of `Cost.error`. None unless some estimator has nodes.
+    batches : ndarray, shape (M, B, C, Rb, Kb), or None
+        Energy in blocks of cells (`goniosim.sums.block_sums`) by each of B independent batches of replicates: each is an
+        unbiased estimate, and their mean is the sum of ``energy`` over the block. Tells the errors of sums over cells
+        where paths are not independent; 0 in directions of ``analog``, whose covariance is known, and None if there are no others.
     contains_delta : bool
         Whether some of the energy leaves in exactly one direction (a chain of
         smooth interfaces); the BSDF of the cell that holds that direction is
@@ -54,6 +72,17 @@ class Component:
     hits: np.ndarray | None = None
     contains_delta: bool = False
     orders: dict[str, Component] = field(default_factory=dict)
+    uncertain: np.ndarray | None = None
+    albedo: np.ndarray | None = None
+    albedo_stderr: np.ndarray | None = None
+    estimator: list[str] = field(default_factory=list)
+    node_bias: np.ndarray | None = None
+    batches: np.ndarray | None = None
+
+    @property
+    def sampled(self) -> bool:
+        """Whether paths made it, and not an integration or a model."""
+        return any(name != INTEGRATED for name in self.estimator)
 
     def __repr__(self) -> str:
         from goniosim.report import brief
@@ -142,25 +171,39 @@ AUDIT_ENTRIES = {
 
 @dataclass(eq=False)
 class Cost:
-    """What accuracy cost in time: one row per checkpoint.
+    """What accuracy cost in time, per direction, at P checkpoints.
 
     Attributes
     ----------
-    rays : ndarray, shape (P,)
-        Rays per incident direction (mean over directions) traced so far.
-    seconds, cpu_seconds : ndarray, shape (P,)
-        Wall-clock and processor time of tracing so far, without compilation.
-    error : dict of str to ndarray, shape (P,)
-        Per sampled component, in 1/sr^(1/2): the mean over the channels of the
-        root of the mean over the directions of the integral of
+    rays : ndarray, shape (M, P)
+        Rays traced so far. A direction that ended before others repeats its last numbers.
+    seconds, cpu_seconds : ndarray, shape (M, P)
+        Wall-clock and processor time spent on the direction so far, without compilation. Directions share the
+        threads, so that wall-clock time is shared out as the processor time is: the sum over directions has elapsed.
+    error : dict of str to ndarray, shape (M, P)
+        Per sampled component, in 1/sr^(1/2): the mean over the channels of the root of the integral of
         bsdf_stderr^2 cos(theta) over the valid cells. This is the noise floor of
-        the RMSE of Eq. 4, Bati et al. 2019, as in the table of errors.
+        the RMSE of Eq. 4, Bati et al. 2019, of the direction, as in the table of errors.
     """
 
     rays: np.ndarray
     seconds: np.ndarray
     cpu_seconds: np.ndarray
     error: dict[str, np.ndarray]
+
+    @property
+    def checkpoints(self) -> int:
+        """Number of checkpoints."""
+        return self.rays.shape[1]
+
+    @property
+    def elapsed(self) -> np.ndarray:
+        """Wall-clock time of all directions, shape (P,)."""
+        return self.seconds.sum(axis=0)
+
+    def noise(self, component: str) -> np.ndarray:
+        """Error of a component over all directions, shape (P,): the root of the mean of the squares."""
+        return np.sqrt((self.error[component] ** 2).mean(axis=0))
 
     def __repr__(self) -> str:
         from goniosim.report import brief
@@ -217,6 +260,12 @@ class Result:
     effects: dict[str, bool]
     provenance: dict[str, str]
 
+    @property
+    def estimator(self) -> str:
+        """What made the sampled components: one name if all directions agree, else ``mixed``."""
+        found = {name for part in self.components.values() if part.sampled for name in part.estimator}
+        return "mixed" if len(found) > 1 else next(iter(found), INTEGRATED)
+
     def __repr__(self) -> str:
         from goniosim.report import brief
 
@@ -265,10 +314,10 @@ class Result:
         Returns
         -------
         value, stderr : ndarray, shape (M, C)
-            The standard error of a sampled component is that of its entry in the `audit`, from the scatter
-            between independent parts of the rays; that of ``reflection/direct`` is the integration's. Orders,
-            and internal reflection and transmission together, have no such entry: theirs follows from the
-            errors of the cells and from the fact that a path leaves in one cell only. Where no path arrived
+            The standard error of a sampled component counts that cells share their paths, see `goniosim.sums`;
+            that of ``reflection/direct`` is the integration's. Internal reflection and transmission share their
+            paths as well: a path of ``analog`` leaves in one of them only, other estimators have their batches, and
+            without those the two errors are added, which is a limit. Where no path arrived
             it is 1.5 / `rays`, since that much may have gone unseen; both are NaN where no ray was traced. Channels
             share their paths, and so their errors; directions are independent of each other.
 

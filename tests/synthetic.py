@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from goniosim.result import AUDIT_ENTRIES, Audit, Cells, Component, Cost, Result
+from goniosim.effective import uncertain
+from goniosim.result import AUDIT_ENTRIES, INTEGRATED, Audit, Cells, Component, Cost, Result
+from goniosim.sums import BATCHES, block_sums, noise_of, sum_and_error
 
 CONFIG = """\
 material:
@@ -37,6 +39,7 @@ def make_result(
     name="synthetic",
     config_yaml=None,
     seed=1,
+    estimator="analog",
 ):
     """Make up a result: hits are Poisson counts, energies carry continuous weights as absorption gives.
 
@@ -58,6 +61,8 @@ def make_result(
         A scene to which all this belongs by default.
     seed : int
         Of the made-up numbers, and the seed that the result claims.
+    estimator : str or dict of str to str
+        Of the sampled components, or of each of them; others than ``analog`` keep batches and have nodes.
 
     Returns
     -------
@@ -65,7 +70,10 @@ def make_result(
     """
     rng = np.random.default_rng(seed)
     cells = _cells(parametrization, len(theta_deg), rows, columns)
-    made = {path: _component(path, rng, cells, len(channels), rays, orders) for path in components}
+    made = {}
+    for path in components:
+        own = estimator if isinstance(estimator, str) else estimator.get(path, "analog")
+        made[path] = _component(path, rng, cells, len(channels), rays, orders, own)
     totals = {path: component.energy.sum(axis=(2, 3)) for path, component in made.items()}
     scene = CONFIG.format(
         name=name,
@@ -91,7 +99,7 @@ def make_result(
         cells=cells,
         components=made,
         audit=_audit(rng, totals, (len(theta_deg), len(channels)), rays),
-        cost=_cost(components, rays),
+        cost=_cost(components, len(theta_deg), rays),
         effects={"absorption": True, "colour": True, "orders": orders > 0, "transmission": False},
         provenance={
             "created_utc": "2024-05-01T12:00:00Z",
@@ -141,7 +149,7 @@ def _cells(parametrization, directions, rows, columns):
     )
 
 
-def _component(path, rng, cells, channels, rays, orders):
+def _component(path, rng, cells, channels, rays, orders, estimator):
     # Each component gets about a quarter of the rays, spread as a Lambertian spreads them.
     expected = rays / 4 * cells.projected_solid_angle / np.pi
     hits = rng.poisson(expected)
@@ -156,17 +164,39 @@ def _component(path, rng, cells, channels, rays, orders):
     if sampled and orders:
         lowest = 1 if path == "transmission" else 2
         names = [*(f"order_{number}" for number in range(lowest, orders + 1)), f"order_{orders + 1}_and_more"]
-        parts = {name: _component(path, rng, cells, channels, rays, 0) for name in names}
+        parts = {name: _component(path, rng, cells, channels, rays, 0, estimator) for name in names}
     to_bsdf = np.where(cells.valid, 1 / cells.projected_solid_angle, 0.0)[:, None]
-    return Component(
+    made = Component(
         energy=energy,
         stderr=stderr,
         bsdf=energy * to_bsdf,
         bsdf_stderr=stderr * to_bsdf,
-        hits=hits.astype(np.int64) if sampled else None,
+        hits=hits.astype(np.int64) if sampled and estimator == "analog" else None,
         contains_delta=path == "transmission",
         orders=parts,
+        estimator=[estimator if sampled else INTEGRATED] * len(hits),
     )
+    if sampled and estimator != "analog":
+        made.node_bias = np.full(len(hits), 1e-6)
+        made.batches = _batches(energy)
+    fill(made, rays)
+    return made
+
+
+def fill(component, rays):
+    """Set what follows from energies, errors, hits and batches: albedo, its error, and which cells are uncertain."""
+    component.albedo = component.energy.sum(axis=(2, 3))
+    component.albedo_stderr = np.full(component.albedo.shape, 1e-9)
+    if component.sampled:
+        component.uncertain = uncertain(component.energy, component.stderr, rays)
+        for m, (energy, stderr) in enumerate(zip(component.energy, component.stderr, strict=True)):
+            component.albedo_stderr[m] = sum_and_error(energy, stderr, noise_of(component, m, rays))[1]
+
+
+def _batches(energy):
+    """Batches of replicates that scatter by a tenth, up and down in turn."""
+    sign = np.where(np.arange(BATCHES) % 2, 0.1, -0.1)
+    return (1.0 + sign)[None, :, None, None, None] * block_sums(energy)[:, None]
 
 
 def _audit(rng, totals, shape, rays):
@@ -184,8 +214,8 @@ def _audit(rng, totals, shape, rays):
     return Audit(energy, stderr, totals.get("reflection/direct", np.zeros(shape)), np.full(shape, 1e-9))
 
 
-def _cost(components, rays):
-    traced = rays * np.array([0.25, 0.5, 1.0])
+def _cost(components, directions, rays):
+    traced = np.tile(rays * np.array([0.25, 0.5, 1.0]), (directions, 1))
     sampled = [path for path in components if path != "reflection/direct"]
     return Cost(
         rays=traced,

@@ -128,7 +128,7 @@ class MaterialComparison:
     @property
     def simulation_seconds(self):
         """Time of the simulation per slice."""
-        seconds = self.result.cost.seconds
+        seconds = self.result.cost.elapsed
         return float(seconds[-1]) / len(self.result.theta_deg) if len(seconds) else 0.0
 
     def bsdf(self, label, component):

@@ -7,11 +7,16 @@ w the projected solid angle of a cell, over the valid cells:
     noise    = sum w s^2                  what the noise alone adds to it
     debiased = squared - noise            expectation: the squared error of the model
 
-The noise of a cell is independent of that of the others, so the variance of ``debiased`` is
-sum w^2 (4 delta^2 s^2 + 2 s^4), with delta the model's true error: exact for a Gaussian, and for
-hits of equal weight, which are Poissonian. It is estimated from d and s; where s enters it is that
+With delta the model's true error and V the covariance of the noise of the cells, the variance of ``debiased`` is
+
+    4 sum w_i delta_i V_ij w_j delta_j  +  2 sum w_i w_j V_ij^2:
+
+exact for a Gaussian, and for hits of equal weight, which are Poissonian. The diagonal, sum w^2 (4 delta^2 s^2 + 2 s^4), is
+estimated from d and s; where s enters it is that
 of the mirror-image cell, which has the same expectation but is not correlated with this one's d. (A cell
-that holds Dirac light has no such twin.)
+that holds Dirac light has no such twin.) The first sum then holds the second twice, since d has the noise in it. What lies off
+the diagonal is known, because a path leaves in one cell only, or comes from batches: see `goniosim.sums`. So do the errors
+of the albedo. If the noise itself is estimated from f + 1 batches, ``noise`` has the variance (2 / f) sum w_i w_j V_ij^2.
 Where hits are few or absent it is taken from the model, see `counts`.
 """
 
@@ -39,7 +44,7 @@ class Measures:
         See above; ``variance`` is that of ``squared - noise``, and ``variance_if_true`` what it
         would be with delta = 0. In 1/sr, 1/sr, 1/sr^2 and 1/sr^2.
     unseen, unseen_squared : ndarray
-        Where no path hit the component: hits that a true model expects, and how much of ``squared`` is due
+        Where no path hit the component in the channel: hits that a true model expects, and how much of ``squared`` is due
         to them; 0 elsewhere.
     hidden : ndarray
         Squared error that unhit cells may hide, in 1/sr.
@@ -123,7 +128,7 @@ def measure(model, reference, stderr, cells, counts=None):
         size = cells.projected_solid_angle[m] * cells.valid[m]
         expected = None
         if counts is not None:
-            expected = Expected(*slices, size, counts.hits[m], counts.rays[m], counts.integrated[m])
+            expected = Expected(*slices, size, counts, m)
         rows.append(_one_direction(*slices, size, expected, looked_at))
     names = [field.name for field in fields(Measures)]
     return Measures(**{name: np.stack(values) for name, values in zip(names, zip(*rows, strict=True), strict=True)})
@@ -139,17 +144,29 @@ def _one_direction(model, reference, stderr, size, expected, looked_at):
     squared, noise = _total(size * d2), _total(size * s2)
     from_hits = 2.0 * size**2 * s2 * other_s2
     if_true, few = _total(from_hits), np.zeros(len(d))
-    variance = _total(4.0 * size**2 * d2 * other_s2) - if_true
+    gradient = _total(4.0 * size**2 * d2 * other_s2)
     norm = np.maximum(_total(size * (reference**2 - s2)), 0.0)
-    albedo_stderr = np.sqrt(_total(size**2 * s2))
+    albedo_variance = _total(size**2 * s2)
     unseen, unseen_squared, hidden = np.zeros((3, len(d)))
+    pairs = of_noise = 0.0
+    if expected is not None and expected.noise is not None:
+        valid = size > 0.0
+        pairs = 2.0 * expected.noise.of_squares(size)
+        of_noise = (if_true + pairs) / expected.noise.freedom
+        # The derivative of w d^2 by the energy; d holds the noise too.
+        gradient = gradient + expected.noise.of_sum(2.0 * d * valid, 2.0 * noise)
+        albedo_variance = np.maximum(albedo_variance + expected.noise.of_sum(valid), 0.0)
+    variance = gradient - if_true - pairs + of_noise
+    albedo_stderr = np.sqrt(albedo_variance)
     if expected is not None:
         hidden = expected.hidden
-        if expected.unseen:
-            unseen, unseen_squared = _total(expected.n), _total(size * d2 * (d > 0.0))
-            albedo_stderr = np.maximum(albedo_stderr, 0.5 * RULE_OF_THREE * expected.per_hit)
-        else:
-            if_true, few = expected.variance_if_true(from_hits)
+        dark = expected.unseen
+        unseen = np.where(dark, _total(expected.n), 0.0)
+        unseen_squared = np.where(dark, _total(size * d2 * (d > 0.0)), 0.0)
+        albedo_stderr = np.where(dark, np.maximum(albedo_stderr, 0.5 * RULE_OF_THREE * expected.per_hit), albedo_stderr)
+        if_seen, few_seen = expected.variance_if_true(from_hits)
+        if_true, few = np.where(dark, if_true, if_seen), np.where(dark, few, few_seen)
+    if_true = if_true + pairs + of_noise
     # By chance the estimate may fall below what even a true model has; far below it is no estimate.
     variance = np.maximum(variance, few + 0.25 * (if_true - few))
     row, column, excess = worst_cells(d, s2, size, expected, looked_at, ROUNDING**2 * norm)

@@ -74,7 +74,7 @@ def summarise(comparison):
     interfaces = optical_stack(comparison.scene.material).material.interfaces
     main = comparison.components[0]
     base = {"lambert": PLASTICS, "conductor": METALS, "dielectric": SLABS}[interfaces[-1].type]
-    noise = result.cost.error.get(main, np.zeros(0))
+    noise = result.cost.noise(main) if main in result.cost.error else np.zeros(0)
     return Summary(
         name=result.name,
         category=base,
@@ -83,7 +83,7 @@ def summarise(comparison):
         component=main,
         variants=comparison.variants,
         rows=material_rows(comparison),
-        seconds=result.cost.seconds[: len(noise)] / len(result.theta_deg),
+        seconds=result.cost.elapsed[: len(noise)] / len(result.theta_deg),
         noise=noise,
         source={
             "material": result.name,

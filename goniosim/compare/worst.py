@@ -46,7 +46,7 @@ def worst_cells(d, s2, size, expected, looked_at, negligible):
     else:
         significant = d2 > z**2 * np.maximum(s2, expected.variance)
         missed = expected.n > RULE_OF_THREE + np.log(looked_at)
-        significant = np.where(expected.hits > 0, significant, missed)
+        significant = np.where(expected.hit, significant, missed)
     excess = (significant * size * (d2 - s2)).reshape(len(d), -1)
     best = np.argmax(excess, axis=1)
     excess = excess[np.arange(len(d)), best]

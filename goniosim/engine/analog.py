@@ -1,11 +1,9 @@
 """The analog estimator: every ray is a path of its own that leaves once, and tells its own error."""
 
 import time
-from typing import ClassVar
 
-import numpy as np
-
-from . import estimate
+from ..sums import Paths, sum_and_error
+from .estimate import Estimate, mean_and_error, moments
 from .faint import faint_weights
 from .runs import Spending, Work
 from .schedule import MOST_LEDGERS, Schedule
@@ -38,8 +36,6 @@ class AnalogRun:
     name = "analog"
     # Its rays are followed to their ends, so that it tells where all energy went.
     audits = True
-    # Nothing lies between nodes.
-    bias: ClassVar[dict] = {}
 
     def __init__(self, plan, key, sides=()):
         directions = len(plan.theta_deg)
@@ -131,32 +127,26 @@ class AnalogRun:
     def finish_round(self, direction):
         """Nothing is left to do at a checkpoint."""
 
-    def slices(self, side, direction, order=None):
-        """Energy, standard error and effective number of paths on the distinct channels, and hits.
+    def estimate(self, side, direction, order=None):
+        """What is known of a component, or of one of its orders, in one direction.
 
         Parameters
         ----------
         side, direction : int
         order : int, optional
             Number of the slot among those of the way out; all by default.
+
+        Returns
+        -------
+        goniosim.engine.estimate.Estimate
         """
         first, count, _ = (int(value) for value in self._plan.slots[side])
         first, count = (first, count) if order is None else (first + order, 1)
-        total, squares, hits = estimate.moments(self.tallies[direction].histogram, self._plan, first, count)
-        energy, stderr = estimate.mean_and_error(total, squares, self.rays[direction])
-        number = np.divide(total**2, squares, out=np.zeros_like(total), where=squares > 0.0)
-        return energy, stderr, number, hits
-
-    def total(self, side, direction, order=None):
-        """Energy of all cells, and its standard error; on the distinct channels.
-
-        A path leaves once, so that two cells have the covariance - E_i E_j / (rays - 1).
-        """
-        energy, stderr, _, _ = self.slices(side, direction, order)
-        value = energy.sum(axis=(1, 2))
-        squares = (energy**2).sum(axis=(1, 2))
-        less = (value**2 - squares) / max(self.rays[direction] - 1, 1)
-        return value, np.sqrt(np.maximum((stderr**2).sum(axis=(1, 2)) - less, 0.0))
+        rays = self.rays[direction]
+        total, squares, hits = moments(self.tallies[direction].histogram, self._plan, first, count)
+        energy, stderr = mean_and_error(total, squares, rays)
+        _, total_stderr = sum_and_error(energy, stderr, Paths(energy, rays))
+        return Estimate(energy, stderr, total_stderr, rays, hits)
 
 
 def _added_in_pairs(values):

@@ -1,10 +1,12 @@
 """From runs to a result: components with their error bars, and what they cost."""
 
+import math
+
 import numpy as np
 
-from ..accuracy import norm, relative_error
-from ..result import Cost
-from . import estimate
+from ..accuracy import relative_error
+from ..result import INTEGRATED, Cost
+from .estimate import COMPONENT_OF, Estimate, assemble, channel_weights, noise, shared_seconds, valid_size
 
 
 def components(plan, runs, direct):
@@ -22,10 +24,11 @@ def components(plan, runs, direct):
     -------
     dict of str to goniosim.result.Component
     """
-    found = {"reflection/direct": estimate.assemble(plan, ((*pair, None) for pair in direct), bool(plan.mirrors[0]))}
+    integrated = (Estimate(energy, stderr, stderr.sum(axis=(1, 2))) for energy, stderr in direct)
+    found = {"reflection/direct": assemble(plan, integrated, INTEGRATED, bool(plan.mirrors[0]))}
     run_of = {side: run for run in runs for side in run.sides}
     for side in sorted(run_of):
-        name, delta = estimate.COMPONENT_OF[side], plan.has_specular_chain(side)
+        name, delta = COMPONENT_OF[side], plan.has_specular_chain(side)
         found[name] = _component(plan, run_of[side], side, None, delta)
         count, lowest = int(plan.slots[side, 1]), int(plan.slots[side, 2])
         for order in range(count) if plan.orders else ():
@@ -35,17 +38,11 @@ def components(plan, runs, direct):
 
 
 def _component(plan, run, side, order, delta):
-    directions = range(len(plan.theta_deg))
-
-    def slices():
-        for m in directions:
-            energy, stderr, _, hits = run.slices(side, m, order)
-            yield energy, stderr, hits
-
-    return estimate.assemble(plan, slices(), delta)
+    estimates = (run.estimate(side, m, order) for m in range(len(plan.theta_deg)))
+    return assemble(plan, estimates, run.name, delta)
 
 
-def cost(plan, runs, seconds):
+def cost(plan, runs):
     """What accuracy cost, for each direction at its checkpoints.
 
     Parameters
@@ -53,57 +50,44 @@ def cost(plan, runs, seconds):
     plan : goniosim.engine.plan.Plan
     runs : list of AnalogRun or ReplicatedRun
         With different ways out.
-    seconds : float
-        Wall-clock time of all of them.
 
     Returns
     -------
     goniosim.result.Cost
-        Its seconds are the processor's, in proportion to the wall-clock time of the whole.
     """
     directions = len(plan.theta_deg)
     most = max(len(noted) for run in runs for noted in run.spending.checkpoints)
     shape = (directions, most)
-    rays, cpu_seconds = np.zeros(shape), np.zeros(shape)
-    error = {}
+    rays, cpu_seconds, elapsed, error = np.zeros(shape), np.zeros(shape), np.zeros(most), {}
     for run in runs:
-        for m, noted in enumerate(run.spending.checkpoints):
-            # A direction that was through earlier stays as it was.
-            rows = noted + noted[-1:] * (most - len(noted))
+        # A direction that was through earlier, or never begun, stays as it was.
+        nothing = [(0, 0.0, 0.0, dict.fromkeys((COMPONENT_OF[side] for side in run.sides), 0.0))]
+        kept = [noted + (noted or nothing)[-1:] * (most - len(noted)) for noted in run.spending.checkpoints]
+        for m, rows in enumerate(kept):
             rays[m] = np.maximum(rays[m], [row[0] for row in rows])
             cpu_seconds[m] += [row[1] for row in rows]
-            for name in rows[0][2]:
-                error.setdefault(name, np.zeros(shape))[m] = [row[2][name] for row in rows]
-    total = cpu_seconds[:, -1].sum()
-    return Cost(rays, cpu_seconds * (seconds / total if total > 0.0 else 0.0), cpu_seconds, error)
+            for name in rows[0][3]:
+                error.setdefault(name, np.zeros(shape))[m] = [row[3][name] for row in rows]
+        elapsed += np.max([[row[2] for row in rows] for rows in kept], axis=0)
+    return Cost(rays, shared_seconds(elapsed, cpu_seconds), cpu_seconds, error)
 
 
 def errors(plan, run, direction):
     """Noise of the components of a run in one direction, as `goniosim.result.Cost.error`."""
-    size, weights = valid_size(plan, direction), estimate.channel_weights(plan)
-    return {
-        estimate.COMPONENT_OF[side]: float(norm(run.slices(side, direction)[1], size) @ weights) for side in run.sides
-    }
+    return {COMPONENT_OF[side]: noise(plan, direction, run.estimate(side, direction).stderr) for side in run.sides}
 
 
 def worst_error(plan, run, direction, of):
     """Largest relative error of the components of a run in one direction, see `goniosim.accuracy.relative_error`.
 
-    What nodes let the energies be off counts as an error too.
+    What nodes may be off by counts as an error too.
     """
-    size, weights = valid_size(plan, direction), estimate.channel_weights(plan)
+    size, weights = valid_size(plan, direction), channel_weights(plan)
     found = []
     for side in run.sides:
-        energy, stderr = run.slices(side, direction)[:2]
-        value, error = run.total(side, direction)
-        if direction in run.bias:
-            stderr = np.hypot(stderr, run.bias[direction])
-            error = np.hypot(error, run.bias[direction].sum(axis=(1, 2)))
-        found.append(relative_error(of, energy, stderr, (value, error), size, weights))
+        one = run.estimate(side, direction)
+        total = one.energy.sum(axis=(1, 2)), one.total_stderr
+        error = relative_error(of, one.energy, one.stderr, total, size, weights)
+        whole = noise(plan, direction, one.energy)
+        found.append(math.hypot(error, one.bias / whole) if one.bias and whole > 0.0 else error)
     return max(found)
-
-
-def valid_size(plan, direction):
-    """Projected solid angles of the cells in sr, 0 for those that are not valid; ndarray, shape (rows, columns)."""
-    geometry = plan.geometry[direction]
-    return np.where(geometry.valid, geometry.projected_solid_angle, 0.0)

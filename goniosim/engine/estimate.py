@@ -1,7 +1,11 @@
 """From tallies to numbers with error bars."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ..accuracy import norm
+from ..effective import uncertain
 from ..result import AUDIT_ENTRIES, Audit, Cells, Component
 from .layout import DOWN, UP
 
@@ -47,30 +51,128 @@ def to_bsdf(energy, geometry):
     return np.divide(energy, geometry.projected_solid_angle, out=np.zeros_like(energy), where=valid)
 
 
-def assemble(plan, slices, contains_delta):
-    """A `Component` from energy, stderr and hits (None if not counted) per direction on the distinct channels.
+def channel_weights(plan):
+    """Share of each distinct channel in the mean over all: one that stands for several counts as often."""
+    return np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
 
-    ``slices`` may be a generator: of fine slices, only those of one direction are in memory besides the result.
+
+def noise(plan, direction, energy):
+    """Norm of an error of energies in one direction, mean over the channels: see `goniosim.result.Cost.error`.
+
+    Parameters
+    ----------
+    plan : Plan
+    direction : int
+    energy : ndarray, shape (distinct channels, rows, columns)
+
+    Returns
+    -------
+    float
+        In sr^-1/2.
+    """
+    return float(norm(energy, valid_size(plan, direction)) @ channel_weights(plan))
+
+
+def valid_size(plan, direction):
+    """Projected solid angles of the cells in sr, 0 for those that are not valid; ndarray, shape (rows, columns)."""
+    geometry = plan.geometry[direction]
+    return np.where(geometry.valid, geometry.projected_solid_angle, 0.0)
+
+
+def shared_seconds(elapsed, cpu_seconds):
+    """Elapsed time shared out among the directions, between checkpoints in proportion to their processor time.
+
+    Parameters
+    ----------
+    elapsed : ndarray, shape (P,)
+    cpu_seconds : ndarray, shape (M, P)
+
+    Returns
+    -------
+    ndarray, shape (M, P)
+        Its sum over directions is ``elapsed``; never less than at the checkpoint before.
+    """
+    spent = np.diff(cpu_seconds, prepend=0.0, axis=1)
+    total = spent.sum(axis=0)
+    shares = np.divide(spent, total, out=np.full_like(spent, 1.0 / len(spent)), where=total > 0.0)
+    return np.cumsum(shares * np.diff(elapsed, prepend=0.0), axis=1)
+
+
+@dataclass
+class Estimate:
+    """One component, or one of its orders, in one direction, on the distinct channels D.
+
+    Attributes
+    ----------
+    energy, stderr : ndarray, shape (D, R, K)
+        Fractions of the incident flux.
+    total_stderr : ndarray, shape (D,)
+        Of the sum over all cells.
+    count : int or None
+        Paths or replicates whose scatter tells the errors; None if it is integrated.
+    hits : ndarray, shape (R, K), or None
+        Paths that arrived, if they are counted.
+    batches : ndarray, shape (B, D, row blocks, column blocks), or None
+        See `goniosim.result.Component.batches`.
+    bias : float or None
+        What nodes may be off by, in sr^-1/2.
+    """
+
+    energy: np.ndarray
+    stderr: np.ndarray
+    total_stderr: np.ndarray
+    count: int | None = None
+    hits: np.ndarray | None = None
+    batches: np.ndarray | None = None
+    bias: float | None = None
+
+
+def assemble(plan, estimates, estimator, contains_delta):
+    """Make a component of what its directions hold.
+
+    Parameters
+    ----------
+    plan : Plan
+    estimates : iterable of Estimate
+        One for each direction; a generator: of fine slices, only those of one direction are in memory besides the result.
+    estimator : str
+    contains_delta : bool
+
+    Returns
+    -------
+    goniosim.result.Component
     """
     shape = (len(plan.theta_deg), len(plan.position), plan.rows, plan.columns)
     found = Component(
         *(np.empty(shape) for _ in range(4)),
         contains_delta=contains_delta,
+        albedo=np.empty(shape[:2]),
+        albedo_stderr=np.empty(shape[:2]),
+        estimator=[estimator] * shape[0],
     )
-    for m, (energy, stderr, hits) in enumerate(slices):
-        found.energy[m] = energy[plan.position]
-        found.stderr[m] = stderr[plan.position]
-        found.bsdf[m] = to_bsdf(energy, plan.geometry[m])[plan.position]
-        found.bsdf_stderr[m] = to_bsdf(stderr, plan.geometry[m])[plan.position]
-        if hits is not None:
-            found.hits = np.zeros((shape[0], *shape[2:]), np.int64) if found.hits is None else found.hits
-            found.hits[m] = hits
+    for m, one in enumerate(estimates):
+        found.energy[m] = one.energy[plan.position]
+        found.stderr[m] = one.stderr[plan.position]
+        found.bsdf[m] = to_bsdf(one.energy, plan.geometry[m])[plan.position]
+        found.bsdf_stderr[m] = to_bsdf(one.stderr, plan.geometry[m])[plan.position]
+        found.albedo[m] = one.energy.sum(axis=(1, 2))[plan.position]
+        found.albedo_stderr[m] = one.total_stderr[plan.position]
+        if one.count is not None:
+            _put(found, "uncertain", m, uncertain(one.energy, one.stderr, one.count)[plan.position])
+        if one.hits is not None:
+            _put(found, "hits", m, one.hits.astype(np.int64))
+        if one.batches is not None:
+            _put(found, "batches", m, one.batches[:, plan.position])
+        if one.bias is not None:
+            _put(found, "node_bias", m, np.float64(one.bias))
     return found
 
 
-def channel_weights(plan):
-    """Share of each distinct channel in a mean over the channels: one that stands for several counts as often."""
-    return np.bincount(plan.position, minlength=plan.n_distinct) / len(plan.position)
+def _put(component, name, direction, values):
+    """Set what one direction holds of an array that not every component has."""
+    if getattr(component, name) is None:
+        setattr(component, name, np.zeros((len(component.energy), *values.shape), values.dtype))
+    getattr(component, name)[direction] = values
 
 
 def audit(plan, ledgers, part_rays, direct):
@@ -93,8 +195,8 @@ def audit(plan, ledgers, part_rays, direct):
     return Audit(
         energy={name: mean[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
         stderr={name: stderr[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
-        direct_integrated=direct.energy.sum(axis=(2, 3)),
-        direct_integrated_stderr=direct.stderr.sum(axis=(2, 3)),
+        direct_integrated=direct.albedo,
+        direct_integrated_stderr=direct.albedo_stderr,
     )
 
 

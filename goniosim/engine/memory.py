@@ -133,14 +133,15 @@ def _of_result(plan):
     # A slice for each way out, and one for each order.
     counts = [int(plan.slots[side, 1]) for side in (UP, DOWN)]
     sampled = sum((1 + count if plan.orders else 1) for count in counts if count)
-    slices = (1 + sampled) * 4 * channels + sampled
+    # Four numbers for each channel, hits, and in an eighth of a number whether the cell is uncertain.
+    slices = (1 + sampled) * 4 * channels + sampled + sampled * channels / 8
     # Two numbers and a flag.
     geometry = 2 * _NUMBER + 1
     return {
         "program": _PROGRAM,
         "cells": directions * cells * geometry,
         "direct": directions * 2 * distinct * cells * _NUMBER,
-        "result": directions * cells * (slices * _NUMBER + geometry),
+        "result": int(directions * cells * (slices * _NUMBER + geometry)),
         "file": int(_WRITTEN * directions * cells * (slices * _NUMBER + geometry)),
     }
 

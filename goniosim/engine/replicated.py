@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .estimate import Estimate, noise
 from .replicates import Replicates, unfold
 from .rounds import REPLICATES as N_REPLICATES
 from .rounds import SMALLEST, chunks, sizes
@@ -37,8 +38,8 @@ class ReplicatedRun:
     Attributes
     ----------
     spending : goniosim.engine.runs.Spending
-    bias : dict of int to ndarray, shape (distinct channels, rows, columns)
-        By direction, how far nodes let the energies of the cells be off; empty for estimators without.
+    bias : dict of int to float
+        By direction, what nodes may be off by, in sr^-1/2; empty for estimators without.
     """
 
     audits = False
@@ -146,28 +147,20 @@ class ReplicatedRun:
 
     def _see_bias(self, direction, coarse):
         """The nodes' bias is of the fourth order in their distance: a fifteenth of what twice the distance changes."""
-        change = coarse.mean(axis=0) - self._first.pop(direction)
         # The nodes serve one way out.
-        self.bias[direction] = unfold(np.abs(change.sum(axis=0)) / 15.0, self._plan.columns)
+        change = (coarse.mean(axis=0) - self._first.pop(direction)).sum(axis=0)
+        self.bias[direction] = noise(self._plan, direction, unfold(change, self._plan.columns)) / 15.0
 
     def finish_round(self, direction):
         """Add a round up, or what there is of it."""
         self._sums[direction].finish_round()
 
-    def slices(self, side, direction, order=None):
-        """Energy, standard error and effective number of replicates on the distinct channels; no hits.
-
-        Parameters
-        ----------
-        side, direction : int
-        order : int, optional
-            Number of the slot among those of the way out; all by default.
-        """
-        return *self._sums[direction].slices(self._place[side, order]), None
-
-    def total(self, side, direction, order=None):
-        """Energy of all cells, and its standard error; on the distinct channels."""
-        return self._sums[direction].total(self._place[side, order])
+    def estimate(self, side, direction, order=None):
+        """What is known of a component, or of one of its orders, in one direction: as `analog.AnalogRun.estimate`."""
+        view, sums = self._place[side, order], self._sums[direction]
+        energy, stderr = sums.slices(view)
+        bias = self.bias.get(direction) if order is None else None
+        return Estimate(energy, stderr, sums.total_stderr(view), sums.count, batches=sums.batches(view), bias=bias)
 
 
 def _views(plan, sides):

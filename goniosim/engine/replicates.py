@@ -7,7 +7,7 @@ their variances add.
 
 import numpy as np
 
-from .blocks import Blocks
+from ..sums import block_sums
 from .mending import mended
 from .rounds import FEWEST_REPLICATES, REPLICATES
 
@@ -30,22 +30,17 @@ class Replicates:
     ----------
     paths : int
         Light paths in the finished rounds.
-    batches : ndarray, shape (B, views, channels, block rows, block columns)
-        Energies of blocks of cells, folded: means with the rounds' weights of the r-th replicates of all rounds. What was
-        interrupted counts only if there is nothing else.
+    count : int
+        Replicates in the finished rounds.
     """
 
     def __init__(self, views, shape, columns, mends):
         self._views = views
         self._columns = columns
         self._mends = mends
-        self._blocks = Blocks(shape[1], shape[2], columns)
         slices, sums = (len(views), *shape), (len(views), shape[0])
-        self._cells, self._totals = _Sum(slices), _Sum(sums)
-        self._effective = np.zeros(slices)
-        self.batches = np.zeros((REPLICATES, *sums, *self._blocks.shape))
-        self._batches_weight = 0.0
-        self.paths = 0
+        self._cells, self._totals, self._batches = _Sum(slices), _Sum(sums), 0.0
+        self.paths = self.count = 0
         self._begin(0)
 
     def _begin(self, size):
@@ -74,50 +69,51 @@ class Replicates:
         if number != self._round.count or size != self._size:
             return
         views = np.stack([slots[view].sum(axis=0) for view in self._views])
-        blocks = self._blocks.sums(views)
+        blocks = block_sums(unfold(views, self._columns))
         self._round.add(views)
-        self._round_totals.add(blocks.sum(axis=(2, 3)) * self._blocks.fold)
+        self._round_totals.add(blocks.sum(axis=(2, 3)))
         self._round_blocks.append(blocks)
 
     def finish_round(self):
         """Add the round up; one of too few replicates is dropped, unless there is no other."""
         count = self._round.count
         if count >= FEWEST_REPLICATES or (count >= 2 and self.weight == 0.0):
-            self._add_batches()
             weight = float(count * self._size)
             variance = self._round.variance_of_mean()
             if self._mends:
                 variance = mended(self._round.mean, variance)
             self._cells.add(self._round.mean, variance, weight)
             self._totals.add(self._round_totals.mean, self._round_totals.variance_of_mean(), weight)
-            self._effective += self._round.effective_number()
+            self._batches += weight / self.weight * (_as_many(np.stack(self._round_blocks)) - self._batches)
             self.paths += count * self._size
+            self.count += count
         self._begin(0)
 
-    def _add_batches(self):
-        blocks = np.stack(self._round_blocks)
-        if self.weight == 0.0:
-            self.batches = self.batches[: len(blocks)]
-        if len(blocks) == len(self.batches):
-            self._batches_weight += self._size
-            self.batches += self._size / self._batches_weight * (blocks - self.batches)
-
     def slices(self, view):
-        """Energy, its standard error and the effective number of replicates of a view.
+        """Energy and its standard error of a view, each of shape (channels, rows, columns)."""
+        energy, variance = (unfold(each[view], self._columns) for each in (self._cells.mean, self._cells.variance))
+        # Cosine series and cubic stencils may go below zero where there is next to nothing.
+        return np.maximum(energy, 0.0), np.sqrt(variance)
+
+    def total_stderr(self, view):
+        """Standard error of the energy of all cells of a view, shape (channels,)."""
+        return np.sqrt(self._totals.variance[view])
+
+    def batches(self, view):
+        """Energies of blocks of cells by the r-th replicates of all rounds, as `goniosim.result.Component.batches`.
 
         Returns
         -------
-        ndarray, each of shape (channels, rows, columns)
+        ndarray, shape (REPLICATES, channels, row blocks, column blocks)
         """
-        energy, variance, number = (
-            unfold(each[view], self._columns) for each in (self._cells.mean, self._cells.variance, self._effective)
-        )
-        # Cosine series and cubic stencils may go below zero where there is next to nothing.
-        return np.maximum(energy, 0.0), np.sqrt(variance), number
+        batches = self._batches[:, view]
+        return batches + (block_sums(self.slices(view)[0]) - batches.mean(axis=0))
 
-    def total(self, view):
-        """Energy of all cells of a view, and its standard error; each of shape (channels,)."""
-        return self._totals.mean[view], np.sqrt(self._totals.variance[view])
+
+def _as_many(found):
+    """As many values as replicates of a whole round, with the same mean; those of an interrupted one come in again."""
+    again = found[np.arange(REPLICATES) % len(found)]
+    return again + (found.mean(axis=0) - again.mean(axis=0))
 
 
 class Welford:
@@ -141,11 +137,6 @@ class Welford:
     def variance_of_mean(self):
         """Squared standard error of the mean."""
         return self._squares / (self.count * (self.count - 1.0))
-
-    def effective_number(self):
-        """How many equal values would scatter so: (sum)^2 / sum of squares; 0 where all are 0."""
-        square = self.count * self.mean**2
-        return np.divide(self.count * square, self._squares + square, out=np.zeros_like(square), where=square > 0.0)
 
 
 class _Sum:

@@ -54,14 +54,16 @@ class Spending:
         self.events[direction] += events
         self.cpu_seconds[direction] += cpu_seconds
 
-    def note(self, direction, rays, errors):
+    def note(self, direction, rays, seconds, errors):
         """Note a checkpoint.
 
         Parameters
         ----------
         direction : int
         rays : int
+        seconds : float
+            Wall-clock time of the run so far.
         errors : dict of str to float
             Noise of each component, in sr^-1/2.
         """
-        self.checkpoints[direction].append((rays, self.cpu_seconds[direction], errors))
+        self.checkpoints[direction].append((rays, self.cpu_seconds[direction], seconds, errors))

@@ -40,6 +40,7 @@ class Session:
     runs: list = field(default_factory=list)
     audit: AnalogRun | None = None
     reached: bool | None = None
+    _began: float = 0.0
 
     @property
     def rays(self):
@@ -76,6 +77,7 @@ class Session:
         if asked.target is not None:
             self.reached = True
         for run in self.runs:
+            self._began = self.drive.seconds
             run.prepare()
             if asked.target is None:
                 self.drive.shoot(run, asked.rays, self._note)
@@ -90,7 +92,8 @@ class Session:
             self.choices = [Choice(ANALOG, sides, f"a pilot says that {rays.max():.1g} rays are enough")]
 
     def _note(self, run, direction):
-        run.spending.note(direction, run.rays[direction], assembly.errors(self.plan, run, direction))
+        seconds = self.drive.seconds - self._began
+        run.spending.note(direction, run.rays[direction], seconds, assembly.errors(self.plan, run, direction))
 
     def _meets(self, target, run, direction):
         return assembly.worst_error(self.plan, run, direction, target.of) <= target.relative_error

@@ -81,7 +81,7 @@ def _simulate(scene, plan, threads, progress, stop):
         cells=estimate.cells(plan),
         components=found,
         audit=estimate.audit(plan, session.audit.ledgers, session.audit.part_rays, found["reflection/direct"]),
-        cost=assembly.cost(plan, session.runs, drive.seconds),
+        cost=assembly.cost(plan, session.runs),
         effects={effect.name: effect.active for effect in effects(scene)},
         provenance={**provenance(threads), "estimator_choice": session.reasons},
         target_reached=session.reached,

@@ -26,7 +26,11 @@ def component(component: Component) -> str:
     """Shape, mean albedo and kind of a component."""
     directions, channels, rows, columns = component.energy.shape
     albedo = component.energy.sum() / (directions * channels)
-    kind = "integrated" if component.hits is None else f"sampled, {text.count(component.hits.sum())} hits"
+    kind = "integrated"
+    if component.sampled:
+        kind = f"sampled ({', '.join(dict.fromkeys(component.estimator))})"
+    if component.hits is not None:
+        kind += f", {text.count(component.hits.sum())} hits"
     parts = [f"{directions} directions, {channels} channels, {rows} x {columns} cells", kind]
     parts.append(f"mean albedo {albedo:.4g}")
     if component.contains_delta:
@@ -51,10 +55,11 @@ def audit(audit: Audit) -> str:
 
 def cost(cost: Cost) -> str:
     """Rays, time and noise at the last checkpoint."""
-    if not len(cost.rays):
+    if not cost.checkpoints:
         return "<Cost: no checkpoints>"
-    noise = "".join(f", noise of {name} {error[-1]:.2g} sr^-1/2" for name, error in cost.error.items())
-    return f"<Cost: {text.count(cost.rays[-1])} rays per direction in {text.duration(cost.seconds[-1])}{noise}>"
+    noise = "".join(f", noise of {name} {cost.noise(name)[-1]:.2g} sr^-1/2" for name in cost.error)
+    rays = text.count(round(cost.rays[:, -1].mean()))
+    return f"<Cost: {rays} rays per direction in {text.duration(cost.elapsed[-1])}{noise}>"
 
 
 def angles(theta_deg: np.ndarray) -> str:

@@ -105,9 +105,9 @@ def _slices(scene, directions):
 
 
 def _result(scene):
-    """Bytes of a result: energies, BSDFs and their errors, hits; and the geometry of the cells."""
+    """Bytes of a result: energies, BSDFs and their errors, hits, uncertain cells; and the geometry of the cells."""
     names = components(scene)
     groups = len(names) + (scene.simulation.orders or 0) * (len(names) - 1)
     numbers = 4 * groups * _slices(scene, 1)
     cells = scene.slice.rows * scene.slice.columns
-    return len(scene.incident.theta_deg) * (numbers + cells * (_NUMBER * (groups + 2) + 1))
+    return len(scene.incident.theta_deg) * (numbers + cells * (_NUMBER * (groups + 2) + 1 + groups * len(CHANNELS)))

@@ -8,13 +8,10 @@ from .._jit import scalar, stage
 from ..optics.elementary import arctan2_first_quadrant
 from .grid import HALF_PI, cell_number
 
-<<<<<<< HEAD
 # Of d omega_v to the solid angle of the axis whose polar angle is `tilt`, besides what `view_direction` returns.
 AXIS_JACOBIAN = 1.0
-=======
 # Whether a row holds the directions of one height, all around the normal.
 RINGS = True
->>>>>>> w-split
 
 
 @stage

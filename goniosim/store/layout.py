@@ -26,7 +26,10 @@ SIZES = {
     "column": "K",
     "row_edges": "R + 1",
     "column_edges": "K + 1",
-    "rays": "P",
+    "batch": "B",
+    "row_block": "Rb",
+    "column_block": "Kb",
+    "checkpoint": "P",
 }
 
 # netCDF wants the scale of a dimension in the group of its users or above it.
@@ -37,7 +40,10 @@ SCALES = {
     "column": "column",
     "row_edges": "cells/row_edges",
     "column_edges": "cells/column_edges",
-    "rays": "cost/rays",
+    "batch": "batch",
+    "row_block": "row_block",
+    "column_block": "column_block",
+    "checkpoint": "cost/checkpoint",
 }
 
 
@@ -136,12 +142,17 @@ CHECKSUMS = (
 _SLICE = ("direction", "channel", "row", "column")
 _CELL = ("direction", "row", "column")
 _TOTAL = ("direction", "channel")
+_BLOCKS = ("direction", "batch", "channel", "row_block", "column_block")
+_COST = ("direction", "checkpoint")
 
 DATASETS = (
     Dataset("direction", ("direction",), "int64", "1", "number of the incident direction", NOT_NEGATIVE),
     Dataset("channel", ("channel",), "text", "1", "name of the colour channel"),
     Dataset("row", ("row",), "float64", "degree", "row coordinate at the centre of the row", NOT_NEGATIVE),
     Dataset("column", ("column",), "float64", "degree", "azimuth at the centre of the column", NOT_NEGATIVE),
+    Dataset("batch", ("batch",), "int64", "1", "number of the batch of replicates", NOT_NEGATIVE),
+    Dataset("row_block", ("row_block",), "int64", "1", "first row of the block", NOT_NEGATIVE),
+    Dataset("column_block", ("column_block",), "int64", "1", "first column of the block", NOT_NEGATIVE),
     Dataset("incident/theta_deg", ("direction",), "float64", "degree", "polar angle of the incident light", POLAR),
     Dataset("incident/phi_deg", ("direction",), "float64", "degree", "azimuth of the incident light", AZIMUTH),
     Dataset("incident/rays", ("direction",), "int64", "1", "rays traced from the direction", NOT_NEGATIVE),
@@ -172,6 +183,12 @@ DATASETS = (
     Dataset("COMPONENT/bsdf", _SLICE, "float64", "sr-1", "BSDF averaged over the cell", NOT_NEGATIVE),
     Dataset("COMPONENT/bsdf_stderr", _SLICE, "float64", "sr-1", "standard error of bsdf", NOT_NEGATIVE),
     Dataset("COMPONENT/hits", _CELL, "int64", "1", "paths that deposited energy in the cell", COUNT),
+    Dataset("COMPONENT/uncertain", _SLICE, "bool", "1", "whether too few paths or replicates reach the cell", FLAG),
+    Dataset("COMPONENT/albedo", _TOTAL, "float64", "1", "sum of energy over the cells", NOT_NEGATIVE),
+    Dataset("COMPONENT/albedo_stderr", _TOTAL, "float64", "1", "standard error of albedo", NOT_NEGATIVE),
+    Dataset("COMPONENT/estimator", ("direction",), "text", "1", "what made the numbers of the direction"),
+    Dataset("COMPONENT/node_bias", ("direction",), "float64", "sr-0.5", "floor that nodes may leave", NOT_NEGATIVE),
+    Dataset("COMPONENT/batches", _BLOCKS, "float64", "1", "energy in blocks of cells, by batches of replicates"),
     *(Dataset(f"audit/{entry}", _TOTAL, "float64", "1", meaning) for entry, meaning in AUDIT_ENTRIES.items()),
     Dataset("audit/ENTRY_stderr", _TOTAL, "float64", "1", "standard error of the audit entry", NOT_NEGATIVE),
     Dataset(
@@ -180,10 +197,11 @@ DATASETS = (
     Dataset(
         "audit/direct_integrated_stderr", _TOTAL, "float64", "1", "standard error of direct_integrated", NOT_NEGATIVE
     ),
-    Dataset("cost/rays", ("rays",), "float64", "1", "rays per incident direction up to the checkpoint", NOT_NEGATIVE),
-    Dataset("cost/seconds", ("rays",), "float64", "s", "elapsed time of tracing", NOT_NEGATIVE),
-    Dataset("cost/cpu_seconds", ("rays",), "float64", "s", "processor time of tracing", NOT_NEGATIVE),
-    Dataset("cost/error_SAMPLED", ("rays",), "float64", "sr-0.5", "noise floor of the component", NOT_NEGATIVE),
+    Dataset("cost/checkpoint", ("checkpoint",), "int64", "1", "number of the checkpoint", NOT_NEGATIVE),
+    Dataset("cost/rays", _COST, "float64", "1", "rays up to the checkpoint", NOT_NEGATIVE),
+    Dataset("cost/seconds", _COST, "float64", "s", "elapsed time of tracing, shared out", NOT_NEGATIVE),
+    Dataset("cost/cpu_seconds", _COST, "float64", "s", "processor time of tracing", NOT_NEGATIVE),
+    Dataset("cost/error_SAMPLED", _COST, "float64", "sr-0.5", "noise floor of the component", NOT_NEGATIVE),
     *CHECKSUMS,
 )
 
@@ -203,6 +221,7 @@ ATTRIBUTES = (
     Attribute("/", "seed", "uint64", "seed of the random numbers"),
     Attribute("/", "status", "text", "`complete`, or `partial` after an interruption"),
     Attribute("/", "name", "text", "name of the material"),
+    Attribute("/", "estimator", "text", "that of all sampled components and directions if they agree, else `mixed`"),
     Attribute("/", "PROVENANCE", "text", "any further text: versions, git revision, command line, machine, threads"),
     Attribute("cells", "parametrization", "text", "`classic` or `half`"),
     Attribute("COMPONENT", "contains_delta", "int8", "1 if some energy leaves in exactly one direction"),
@@ -210,7 +229,7 @@ ATTRIBUTES = (
 )
 
 # Every other text attribute of the root comes from, and goes back to, `Result.provenance`.
-NOT_PROVENANCE = ("filetype", "schema_version", "config_yaml", "config_hash", "seed", "status", "name")
+NOT_PROVENANCE = ("filetype", "schema_version", "config_yaml", "config_hash", "seed", "status", "name", "estimator")
 
 _PLACEHOLDERS = {
     "COMPONENT": rf"(?:{'|'.join(COMPONENTS)})(?:/order_\d+(?:_and_more)?)?",

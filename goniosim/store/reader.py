@@ -10,8 +10,9 @@ from goniosim.result import AUDIT_ENTRIES, Audit, Component, Cost, Result
 from goniosim.scene import Scene
 from goniosim.store import access, validation
 from goniosim.store.decoding import cells, shaped, values
+from goniosim.store.earlier import Earlier
 from goniosim.store.kinds import RESULT
-from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, describe
+from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE
 from goniosim.store.manifest import Manifest, NoManifest
 from goniosim.store.opening import decoding, opened, written_by
 from goniosim.writing import StrPath
@@ -111,11 +112,11 @@ def _header(file: h5py.File, ours: Ours) -> dict[str, str | int]:
 def _result(file: h5py.File, ours: Ours, header: dict[str, Any]) -> Result:
     scene = validation.scene_of(header["config_yaml"])
     validation.check(validation.HEADER_AND_SCENE, header, scene)
-    checkpoints = access.dataset(file, "cost/rays").size or 0
-    sizes = {**validation.sizes_of(scene), "rays": min(checkpoints, validation.MAX_CHECKPOINTS)}
+    earlier = Earlier(header)
+    sizes = {**validation.sizes_of(scene), **_sizes(file, ours, earlier)}
 
     def read(path: str) -> Any:
-        entry = describe(path)
+        entry = earlier.describe(path)
         return values(shaped(file, path, entry, sizes), entry)
 
     effects = access.group(file, "effects")
@@ -144,18 +145,38 @@ def _result(file: h5py.File, ours: Ours, header: dict[str, Any]) -> Result:
         },
     )
     validation.check(validation.GEOMETRY, result, scene)
+    earlier.complete(result)
     validation.check(validation.RESULT, result, scene)
     return result
 
 
+def _sizes(file: h5py.File, ours: Ours, earlier: Earlier) -> dict[str, int]:
+    """Lengths of the dimensions that the scene does not determine."""
+    limits = {"checkpoint": (earlier.checkpoints, validation.MAX_CHECKPOINTS)}
+    if ours.has("batch"):
+        limits["batch"] = ("batch", validation.MAX_BATCHES)
+    # Of something larger the shape is refused.
+    return {dim: min(access.dataset(file, path).size or 0, most) for dim, (path, most) in limits.items()}
+
+
 def _component(file: h5py.File, ours: Ours, path: str, read: Callable[[str], Any]) -> Component:
     orders = sorted((int(match[1]), match[0]) for match in map(_ORDER.fullmatch, ours.members(path)) if match)
+
+    def there(name: str) -> Any:
+        return read(f"{path}/{name}") if ours.has(f"{path}/{name}") else None
+
     return Component(
         energy=read(f"{path}/energy"),
         stderr=read(f"{path}/stderr"),
         bsdf=read(f"{path}/bsdf"),
         bsdf_stderr=read(f"{path}/bsdf_stderr"),
-        hits=read(f"{path}/hits") if ours.has(f"{path}/hits") else None,
+        hits=there("hits"),
+        uncertain=there("uncertain"),
+        albedo=there("albedo"),
+        albedo_stderr=there("albedo_stderr"),
+        estimator=there("estimator") or [],
+        node_bias=there("node_bias"),
+        batches=there("batches"),
         contains_delta=access.flag(access.group(file, path), "contains_delta"),
         orders={name: _component(file, ours, f"{path}/{name}", read) for _, name in orders},
     )

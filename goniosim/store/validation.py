@@ -5,18 +5,21 @@ The types and ranges of single datasets stand in `goniosim.store.layout`; here i
 
 import functools
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from goniosim.errors import ConfigError
+from goniosim.result import INTEGRATED
 from goniosim.scene import CHANNELS, Scene, components, parse_scene
 from goniosim.scene.model import FileName
+from goniosim.sums import BLOCKS, block_starts, block_sums
 
 # Each checkpoint comes after twice the work of the one before; a merged run may have more of them.
 MAX_CHECKPOINTS = 100_000
+MAX_BATCHES = 1024
 _SUM = 1e-6
 _ANGLE = 1e-9
 # Smaller numbers have lost their digits.
@@ -151,35 +154,61 @@ RESULT = (
         ),
     ),
     Rule(
-        "COMPONENT/hits",
-        "be there for sampled components, and only for them",
+        "COMPONENT/estimator",
+        "be a plain name for each direction, and `integrated` for reflection/direct alone",
         lambda result, scene: all(
-            (component.hits is None) == (name == "reflection/direct") for name, component in result.components.items()
+            len(part.estimator) == len(result.theta_deg)
+            and all(map(is_name, part.estimator))
+            and {name == INTEGRATED for name in part.estimator} == {path.startswith("reflection/direct")}
+            for path, part in _parts(result)
         ),
     ),
     Rule(
-        "COMPONENT/energy",
-        "sum to what the audit says of the component",
+        "COMPONENT/hits",
+        "be there for components of independent paths, and only for them",
         lambda result, scene: all(
-            np.allclose(component.energy.sum(axis=(2, 3)), _audited(result, name), rtol=_SUM, atol=_SUM)
-            for name, component in result.components.items()
+            (part.hits is not None) == all(name == "analog" for name in part.estimator) for _, part in _parts(result)
+        ),
+    ),
+    Rule(
+        "COMPONENT/uncertain",
+        "be there for sampled components, and only for them",
+        lambda result, scene: all((part.uncertain is not None) == part.sampled for _, part in _parts(result)),
+    ),
+    Rule(
+        "COMPONENT/albedo and albedo_stderr",
+        "be there, and albedo be the sum of energy",
+        lambda result, scene: all(
+            part.albedo is not None
+            and part.albedo_stderr is not None
+            and np.allclose(part.energy.sum(axis=(2, 3)), part.albedo, rtol=_SUM, atol=_SUM)
+            for _, part in _parts(result)
+        ),
+    ),
+    Rule(
+        "COMPONENT/batches",
+        "be two or more, with the mean of them the energy in the blocks, or 0 for independent paths",
+        lambda result, scene: all(_are_batches(part) for _, part in _parts(result) if part.batches is not None),
+    ),
+    Rule(
+        "COMPONENT/energy",
+        "sum to what the audit says of the component, if the paths are its own",
+        lambda result, scene: all(
+            _is_audited(component, _audited(result, name)) for name, component in result.components.items()
         ),
     ),
     Rule(
         "COMPONENT/bsdf",
         "be the energy over the projected solid angle in valid cells, and 0 elsewhere",
-        lambda result, scene: all(
-            _is_averaged(part, result.cells)
-            for component in result.components.values()
-            for part in (component, *component.orders.values())
-        ),
+        lambda result, scene: all(_is_averaged(part, result.cells) for _, part in _parts(result)),
     ),
     Rule("audit", "sum to 1 wherever rays were traced", lambda result, scene: _is_balanced(result)),
     Rule(
         "cost",
         "not decrease from one checkpoint to the next",
         lambda result, scene: all(
-            (np.diff(each) >= 0.0).all() for each in (result.cost.rays, result.cost.seconds, result.cost.cpu_seconds)
+            (np.diff(each, axis=1) >= 0.0).all()
+            for each in (result.cost.rays, result.cost.seconds, result.cost.cpu_seconds)
         ),
     ),
     Rule(
@@ -210,6 +239,8 @@ def sizes_of(scene: Scene) -> dict[str, int]:
         "column": columns,
         "row_edges": rows + 1,
         "column_edges": columns + 1,
+        "row_block": len(block_starts(rows, BLOCKS[0])),
+        "column_block": len(block_starts(columns, BLOCKS[1])),
     }
 
 
@@ -228,6 +259,27 @@ def _is_label(text: str) -> bool:
 
 def _is_even(edges: np.ndarray, end: float) -> bool:
     return np.allclose(edges, np.linspace(0.0, end, len(edges)), rtol=0.0, atol=_ANGLE)
+
+
+def _parts(result: Any) -> Iterator[tuple[str, Any]]:
+    """Paths and components, with the orders of each."""
+    for name, component in result.components.items():
+        yield name, component
+        yield from ((f"{name}/{order}", part) for order, part in component.orders.items())
+
+
+def _are_batches(part: Any) -> bool:
+    if part.batches.shape[1] < 2:
+        return False
+    own = np.array([name not in ("analog", INTEGRATED) for name in part.estimator])
+    blocks = np.where(own[:, None, None, None], block_sums(part.energy), 0.0)
+    return np.allclose(part.batches.mean(axis=1), blocks, rtol=_SUM, atol=_SUM)
+
+
+def _is_audited(component: Any, audited: np.ndarray) -> bool:
+    # Other estimators are audited by a run of independent paths beside theirs.
+    same = [name in ("analog", INTEGRATED) for name in component.estimator]
+    return np.allclose(component.energy[same].sum(axis=(2, 3)), audited[same], rtol=_SUM, atol=_SUM)
 
 
 def _audited(result: Any, component: str) -> np.ndarray:

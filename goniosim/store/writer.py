@@ -13,6 +13,10 @@ from goniosim.store import seal
 from goniosim.store.encoding import FORMAT, reserve_seal, utf8, write_dataset, write_manifest, write_text
 from goniosim.store.kinds import RESULT
 from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, describe
+from goniosim.sums import BLOCKS, block_starts
+
+# Arrays of a component that not every one has.
+OPTIONAL = ("hits", "uncertain", "albedo", "albedo_stderr", "node_bias", "batches")
 
 
 def encode(result: Result) -> tuple[memoryview | bytes, ...]:
@@ -35,6 +39,7 @@ def encode(result: Result) -> tuple[memoryview | bytes, ...]:
         If the result contradicts the schema.
     """
     attributes = root_attributes(result)
+    batches = _batches_of(result)
     sizes = {
         "direction": len(result.theta_deg),
         "channel": len(result.channels),
@@ -42,8 +47,10 @@ def encode(result: Result) -> tuple[memoryview | bytes, ...]:
         "column": len(result.cells.column_edges) - 1,
         "row_edges": len(result.cells.row_edges),
         "column_edges": len(result.cells.column_edges),
-        "rays": len(result.cost.rays),
+        "checkpoint": result.cost.checkpoints,
     }
+    if batches is not None:
+        sizes |= dict(zip(("batch", "row_block", "column_block"), (batches.shape[n] for n in (1, 3, 4)), strict=True))
     with h5py.File(uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=FORMAT) as file:
         place = reserve_seal(file)
         for path, values in arrays(result):
@@ -71,6 +78,12 @@ def encode(result: Result) -> tuple[memoryview | bytes, ...]:
     return view[:place], seal.make(RESULT, len(image), digest, content_digest), view[place + seal.SIZE :]
 
 
+def _batches_of(result: Result) -> np.ndarray | None:
+    """Batches of some component, all of which have the same shape; None if no component has any."""
+    found = (part.batches for _, part in components_of(result.components) if part.batches is not None)
+    return next(found, None)
+
+
 def root_attributes(result: Result) -> dict[str, str | int]:
     """Attributes of the root of a result file; a ValueError if the result contradicts the schema."""
     if result.status not in ("complete", "partial"):
@@ -86,6 +99,7 @@ def root_attributes(result: Result) -> dict[str, str | int]:
         "config_hash": result.config_hash,
         "status": result.status,
         "name": result.name,
+        "estimator": result.estimator,
         **result.provenance,
     }
     # What is hashed must be what a reader gets back.
@@ -108,6 +122,12 @@ def arrays(result: Result) -> Iterator[tuple[str, Any]]:
     yield "channel", result.channels
     yield "row", (cells.row_edges[:-1] + cells.row_edges[1:]) / 2
     yield "column", (cells.column_edges[:-1] + cells.column_edges[1:]) / 2
+    batches = _batches_of(result)
+    if batches is not None:
+        rows, columns = (len(edges) - 1 for edges in (cells.row_edges, cells.column_edges))
+        yield "batch", np.arange(batches.shape[1])
+        yield "row_block", block_starts(rows, BLOCKS[0])
+        yield "column_block", block_starts(columns, BLOCKS[1])
     yield "incident/theta_deg", result.theta_deg
     yield "incident/phi_deg", result.phi_deg
     yield "incident/rays", result.rays
@@ -117,13 +137,16 @@ def arrays(result: Result) -> Iterator[tuple[str, Any]]:
     for path, component in components_of(result.components):
         for name in ("energy", "stderr", "bsdf", "bsdf_stderr"):
             yield f"{path}/{name}", getattr(component, name)
-        if component.hits is not None:
-            yield f"{path}/hits", component.hits
+        for name in OPTIONAL:
+            if getattr(component, name) is not None:
+                yield f"{path}/{name}", getattr(component, name)
+        yield f"{path}/estimator", component.estimator
     for entry in result.audit.energy:
         yield f"audit/{entry}", result.audit.energy[entry]
         yield f"audit/{entry}_stderr", result.audit.stderr[entry]
     yield "audit/direct_integrated", result.audit.direct_integrated
     yield "audit/direct_integrated_stderr", result.audit.direct_integrated_stderr
+    yield "cost/checkpoint", np.arange(result.cost.checkpoints)
     for name in ("rays", "seconds", "cpu_seconds"):
         yield f"cost/{name}", getattr(result.cost, name)
     for sampled, error in result.cost.error.items():

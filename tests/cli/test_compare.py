@@ -127,7 +127,7 @@ def test_the_noise_floor_is_that_of_the_simulation(report):
         if (row["model"], row["component"], row["channel"], row["theta_deg"], row["material"])
         == ("bati19_ww", "reflection/internal", "mean", "all", "metal")
     ]
-    assert row["noise_floor"] == pytest.approx(result.cost.error["reflection/internal"][-1], rel=1e-9)
+    assert row["noise_floor"] == pytest.approx(result.cost.noise("reflection/internal")[-1], rel=1e-9)
 
 
 def test_errors_json_has_units_provenance_and_the_same_rows(report):

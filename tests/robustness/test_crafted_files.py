@@ -82,6 +82,14 @@ def dataset(where, data=None, **options):
     return replaced(where, lambda group, name: group.create_dataset(name, data=data, **options))
 
 
+def halved(*paths):
+    def edit(file):
+        for each in paths:
+            file[each][...] = file[each][...] / 2
+
+    return edit
+
+
 def removed(*paths):
     def edit(file):
         for each in paths:
@@ -168,7 +176,25 @@ CASES = {
     "huge-geometry": (values("cells/projected_solid_angle", lambda v: v + 1e308), "projected_solid_angle must be fin"),
     "hits": (values("reflection/internal/hits", lambda v: -v - 1), "reflection/internal/hits must be from 0 to 1e"),
     "hits-more": (values("reflection/internal/hits", lambda v: v + (1 << 62)), "hits must be from 0 to 1e"),
-    "energy-other": (values(ENERGY, lambda v: v / 2), "energy must sum to what the audit says"),
+    "energy-other": (values(ENERGY, lambda v: v / 2), "albedo be the sum of energy"),
+    "albedo-other": (halved("reflection/internal/albedo", ENERGY), "energy must sum to what the audit says"),
+    "albedo-missing": (removed("reflection/internal/albedo"), "albedo and albedo_stderr must be there"),
+    "albedo-stderr": (values("reflection/internal/albedo_stderr", lambda v: -v), "albedo_stderr must be finite and 0"),
+    "uncertain-missing": (removed("reflection/internal/uncertain"), "COMPONENT/uncertain must be there"),
+    "uncertain-two": (values("reflection/internal/uncertain", lambda v: v + 2), "uncertain must be from 0 to 1"),
+    "estimator-escape": (
+        dataset("reflection/internal/estimator", np.array([b"analog", b"\x1b[2J"])),
+        "be a plain name",
+    ),
+    "estimator-none": (removed("reflection/internal/estimator"), "estimator must be a plain name for each direction"),
+    "estimator-other": (
+        dataset("reflection/internal/estimator", np.array([b"analog", b"split"])),
+        "hits must be there for components of independent paths, and only",
+    ),
+    "estimator-direct": (
+        dataset("reflection/internal/estimator", np.array([b"analog", b"integrated"])),
+        "`integrated` for reflection/direct alone",
+    ),
     "bsdf-other": (values("reflection/direct/bsdf", lambda v: 2 * v), "bsdf must be the energy over the projected"),
     "stderr-other": (values("reflection/internal/stderr", lambda v: 2 * v), "bsdf must be the energy over the"),
     "valid-none": (values("cells/valid", lambda v: 0 * v), "bsdf must be .* and 0 elsewhere"),
@@ -176,9 +202,12 @@ CASES = {
     "hits-missing": (removed("reflection/internal/hits"), "COMPONENT/hits must be there"),
     "audit": (values("audit/absorbed_base", lambda v: v + 0.01), "audit must sum to 1"),
     "audit-missing": (removed("audit/lost_roulette"), "audit/lost_roulette is missing"),
-    "cost-back": (values("cost/seconds", lambda v: v[::-1]), "cost must not decrease"),
+    "cost-back": (values("cost/seconds", lambda v: v[:, ::-1]), "cost must not decrease"),
     "cost-negative": (values("cost/cpu_seconds", lambda v: v - 1e9), "cost/cpu_seconds must be finite and 0"),
-    "cost-endless": (dataset("cost/rays", shape=(1 << 40,), dtype="f8", chunks=(1 << 20,)), "cost/rays has shape"),
+    "cost-endless": (
+        dataset("cost/checkpoint", shape=(1 << 40,), dtype="i8", chunks=(1 << 20,)),
+        "cost/checkpoint has shape|cost/rays has shape",
+    ),
     "cost-error-missing": (removed("cost/error_reflection_internal"), "cost/error_SAMPLED must be there"),
     "effects-name": (number("effects", "\x1b]0;evil", np.int8(1)), "effects must have plain names"),
     "effects-escape": (number("effects", "\x1b]0;evil", np.int8(3)), r"the attribute \\x1b\]0;evil of /effects is 3"),

@@ -5,6 +5,7 @@ import threading
 import numpy as np
 import pytest
 
+from goniosim.effective import effective_count
 from goniosim.engine import assembly
 from goniosim.engine.analog import AnalogRun
 from goniosim.engine.drive import Drive
@@ -24,7 +25,9 @@ def shot(run, threads=2, rays=RAYS, stop=None):
     """The run, done."""
     run.prepare()
     drive = Drive(threads, stop or threading.Event(), lambda done, total: None)
-    drive.shoot(run, rays, lambda run, m: run.spending.note(m, run.rays[m], assembly.errors(run._plan, run, m)))
+    drive.shoot(
+        run, rays, lambda run, m: run.spending.note(m, run.rays[m], drive.seconds, assembly.errors(run._plan, run, m))
+    )
     return run
 
 
@@ -50,31 +53,32 @@ def test_means_and_errors_agree(pair):
     plan, analog, run = pair
     for side, order in views(plan):
         for m in range(2):
-            a, sigma_a, _, _ = analog.slices(side, m, order)
-            b, sigma_b, number, hits = run.slices(side, m, order)
-            assert hits is None
+            one, other = analog.estimate(side, m, order), run.estimate(side, m, order)
+            assert other.hits is None and one.batches is None
+            a, sigma_a, b, sigma_b = one.energy, one.stderr, other.energy, other.stderr
+            number = effective_count(b, sigma_b, other.count)
             z = ((a - b) / np.sqrt(sigma_a**2 + sigma_b**2 + 1e-300))[number > ENOUGH]
             # Three channels and two halves share paths. Four sigmas: one false alarm in 16,000.
             assert np.sqrt((z**2).mean()) == pytest.approx(1.0, abs=4.0 / np.sqrt(2.0 * z.size / 6.0))
             # Both halves tell of a cell.
             assert (sigma_b**2).sum() == pytest.approx(0.5 * (sigma_a**2).sum(), rel=0.5)
-            (va, ea), (vb, eb) = (each.total(side, m, order) for each in (analog, run))
-            assert np.allclose(vb, b.sum(axis=(1, 2))) and (np.abs(va - vb) < 4.5 * np.hypot(ea, eb)).all()
+            off = np.abs((a - b).sum(axis=(1, 2)))
+            assert (off < 4.5 * np.hypot(one.total_stderr, other.total_stderr)).all()
 
 
 def test_orders_add_up(pair):
     plan, _, run = pair
     if plan.orders:
         for side, count in ((UP, 2), (DOWN, 3)):
-            parts = sum(run.slices(side, 1, order)[0] for order in range(count))
-            assert np.allclose(parts, run.slices(side, 1)[0], rtol=1e-12, atol=0.0)
+            parts = sum(run.estimate(side, 1, order).energy for order in range(count))
+            assert np.allclose(parts, run.estimate(side, 1).energy, rtol=1e-12, atol=0.0)
 
 
 def test_checkpoints_fall_on_rounds_and_errors_shrink(pair):
     plan, analog, run = pair
-    cost = assembly.cost(plan, [run], 2.0)
+    cost = assembly.cost(plan, [run])
     assert cost.rays.shape == (2, 2) and cost.rays[0].tolist() == [run.rays[0] / 3, run.rays[0]]
-    assert cost.seconds[:, -1].sum() == pytest.approx(2.0) and (np.diff(cost.cpu_seconds) > 0.0).all()
+    assert cost.seconds[:, -1].sum() > 0.0 and (np.diff(cost.cpu_seconds) > 0.0).all()
     assert all((np.diff(error) < 0.0).all() for error in cost.error.values())
     assert set(cost.error) == {"reflection/internal", "transmission"}
     assert (run.spending.events > run.rays).all() and analog.finished and run.finished
@@ -89,9 +93,9 @@ def test_the_same_bits_on_any_number_of_threads(run_of):
     for other in others:
         for side in (UP, DOWN):
             for m in range(2):
-                for a, b in zip(one.slices(side, m)[:3], other.slices(side, m)[:3], strict=True):
-                    assert np.array_equal(a, b)
-                assert np.array_equal(one.total(side, m), other.total(side, m))
+                a, b = (run.estimate(side, m) for run in (one, other))
+                assert np.array_equal(a.energy, b.energy) and np.array_equal(a.stderr, b.stderr)
+                assert np.array_equal(a.total_stderr, b.total_stderr)
 
 
 def test_components_that_run_apart_are_the_same():
@@ -99,7 +103,7 @@ def test_components_that_run_apart_are_the_same():
     both = shot(ReplicatedRun(plan, Plain(plan), (UP, DOWN), 7), rays=50_000)
     for side in (UP, DOWN):
         alone = shot(ReplicatedRun(plan, Plain(plan, (side,)), (side,), 7), rays=50_000)
-        assert alone.sides == (side,) and np.array_equal(alone.slices(side, 1)[0], both.slices(side, 1)[0])
+        assert alone.sides == (side,) and np.array_equal(alone.estimate(side, 1).energy, both.estimate(side, 1).energy)
 
 
 class Stopping(Plain):
@@ -128,4 +132,4 @@ def test_a_stop_keeps_whole_replicates():
     run = shot(ReplicatedRun(plan, Stopping(plan, stop, 9), (UP, DOWN), 1), threads=1, rays=50_000, stop=stop)
     size = 50_016 // 32
     assert not run.finished and 8 * size <= run.rays[0] < 50_000 and run.rays[0] % size == 0
-    assert len(run.spending.checkpoints[0]) == 1 and run.slices(DOWN, 0)[0].sum() > 0.3
+    assert len(run.spending.checkpoints[0]) == 1 and run.estimate(DOWN, 0).energy.sum() > 0.3

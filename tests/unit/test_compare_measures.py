@@ -8,7 +8,8 @@ import pytest
 
 from goniosim.compare.counts import Counts
 from goniosim.compare.measures import measure, rmse
-from goniosim.result import Cells
+from goniosim.engine.estimate import mean_and_error
+from goniosim.result import Cells, Component
 
 ROWS, COLUMNS, SEEDS = 8, 12, 3000
 
@@ -119,7 +120,7 @@ def test_the_worst_cell_is_named():
 # --- few hits, and none ---
 
 
-RAYS = 1000
+RAYS = 4000
 
 
 def lobe():
@@ -133,10 +134,25 @@ def lobe():
 def count_paths(energy, runs, seed, weight=1.0):
     """Runs of `RAYS` paths of a weight: BSDF, standard error, and counts; ``energy`` per cell of the reference."""
     cells = make_cells(runs)
-    hits = np.random.default_rng(seed).poisson(energy * RAYS / weight, (runs, ROWS, COLUMNS))
+    shares = np.append(energy.ravel() / weight, 1.0 - energy.sum() / weight)
+    hits = np.random.default_rng(seed).multinomial(RAYS, shares, runs)[:, :-1].reshape(runs, ROWS, COLUMNS)
+    mean, error = mean_and_error(hits * weight, hits * weight**2, RAYS)
+    return (cells, *measured(cells, hits, mean[:, None], error[:, None]))
+
+
+def measured(cells, hits, energy, stderr):
+    """BSDF, standard error, and counts."""
     size = cells.projected_solid_angle[:, None]
-    bsdf, stderr = (values[:, None] * weight / RAYS / size for values in (hits, np.sqrt(hits)))
-    return cells, bsdf, stderr, Counts(hits, np.full(runs, RAYS), np.zeros_like(bsdf))
+    bsdf, bsdf_stderr = energy / size, stderr / size
+    part = Component(energy, stderr, bsdf, bsdf_stderr, hits, estimator=["analog"] * len(hits))
+    return bsdf, bsdf_stderr, Counts(part, np.full(len(hits), RAYS), np.zeros_like(bsdf))
+
+
+def only(counts, m):
+    """The counts of a single run."""
+    part = counts.sampled
+    arrays = (each[[m]] for each in (part.energy, part.stderr, part.bsdf, part.bsdf_stderr, part.hits))
+    return Counts(Component(*arrays, estimator=["analog"]), counts.rays[[m]], counts.integrated[[m]])
 
 
 def compared(model_energy, cells, bsdf, stderr, counts):
@@ -196,10 +212,10 @@ def test_without_any_hit_the_rule_of_three_decides(expected, significant):
 
 
 def test_one_hit_does_not_excuse_a_model_that_expects_a_hundred():
-    cells, bsdf, stderr, counts = count_paths(np.zeros((ROWS, COLUMNS)), 1, seed=1)
-    counts.hits[0, 2, 3] = 1
-    size = cells.projected_solid_angle[0, 2, 3]
-    bsdf[0, 0, 2, 3] = stderr[0, 0, 2, 3] = 1.0 / RAYS / size
+    cells = make_cells(1)
+    hits = np.zeros((1, ROWS, COLUMNS), int)
+    hits[0, 2, 3] = 1
+    bsdf, stderr, counts = measured(cells, hits, hits[:, None] / RAYS, hits[:, None] / RAYS)
     flat = cells.projected_solid_angle[0] / np.pi
     assert rmse(compared(100.0 / RAYS * flat, cells, bsdf, stderr, counts)).significant
     assert not rmse(compared(2.0 / RAYS * flat, cells, bsdf, stderr, counts)).significant
@@ -209,7 +225,7 @@ def test_what_goes_unseen_excuses_no_error_of_what_is_integrated():
     """A model that falls short of what is integrated is wrong; one that exceeds it may not be."""
     cells, nothing, stderr, counts = count_paths(np.zeros((ROWS, COLUMNS)), 1, seed=1)
     integrated = np.broadcast_to(lobe() / cells.projected_solid_angle[0], nothing.shape)
-    counts = Counts(counts.hits, counts.rays, integrated)
+    counts = Counts(counts.sampled, counts.rays, integrated)
     error = 1.0 / RAYS * lobe()
     assert not rmse(compared(lobe() + error, cells, integrated, stderr, counts)).significant
     assert rmse(compared(lobe() - error, cells, integrated, stderr, counts)).significant
@@ -227,7 +243,7 @@ def test_no_cell_of_the_true_model_is_called_the_worst(hits):
     cells, bsdf, stderr, counts = count_paths(truth, 600, seed=29)
     named = []
     for m in range(600):
-        one = Counts(counts.hits[[m]], counts.rays[[m]], counts.integrated[[m]])
+        one = only(counts, m)
         named.append(compared(truth, make_cells(1), bsdf[[m]], stderr[[m]], one).worst_excess.any())
     assert np.mean(named) < 0.05 + 4.0 * (0.05 / 600) ** 0.5
 

@@ -88,8 +88,9 @@ def test_rays_that_all_met_the_same_fate_are_no_proof_that_none_meets_another(re
 
 
 def test_the_albedo_of_what_nothing_hit_is_a_limit(result):
-    result.components["transmission"].hits[0] = 0
-    result.audit.energy["transmitted"][0] = result.audit.stderr["transmitted"][0] = 0.0
+    component = result.components["transmission"]
+    component.hits[0] = 0
+    component.albedo[0] = component.albedo_stderr[0] = 0.0
     rows = audit.albedo_lines(result)[2:]
     assert rows[0].endswith("< 3e-05") and "<" not in rows[-1]
 

@@ -12,7 +12,7 @@ import goniosim
 from goniosim.engine.estimate import mean_and_error
 from goniosim.errors import OutputError, UnusableResultError
 from goniosim.report.simulation.figures import draw
-from synthetic import make_result
+from synthetic import fill, make_result
 
 
 @pytest.fixture(scope="module")
@@ -20,12 +20,15 @@ def result():
     return make_result(channels=("R", "G", "B"), orders=3)
 
 
-def test_the_albedo_of_a_component_is_that_of_the_audit(result):
-    """Sampled ones have the audit's error, from independent parts of the rays; the direct one the integration's."""
-    for name, entry in (("reflection/internal", "reflected_internal"), ("transmission", "transmitted")):
+def test_the_albedo_of_a_component_is_its_own(result):
+    """Sampled ones have the error of sums over cells that share their paths; the direct one the integration's."""
+    for name in ("reflection/internal", "transmission", "transmission/order_2"):
+        part, _, order = name.partition("/order")
+        component = result.components[part].orders[f"order{order}"] if order else result.components[part]
         value, stderr = result.albedo(name)
-        np.testing.assert_array_equal(value, result.audit.energy[entry])
-        np.testing.assert_array_equal(stderr, result.audit.stderr[entry])
+        np.testing.assert_array_equal(value, component.albedo)
+        np.testing.assert_allclose(stderr, component.albedo_stderr, rtol=1e-15)
+        assert (stderr < 0.99 * np.sqrt((component.stderr**2).sum(axis=(2, 3)))).all()
     value, stderr = result.albedo("reflection/direct")
     np.testing.assert_array_equal(value, result.audit.direct_integrated)
     np.testing.assert_allclose(stderr, result.audit.direct_integrated_stderr, rtol=1e-15)
@@ -37,6 +40,44 @@ def test_albedos_add_up(result):
     np.testing.assert_allclose(value, parts[0][0] + parts[1][0], rtol=1e-15)
     np.testing.assert_allclose(stderr, np.hypot(parts[0][1], parts[1][1]), rtol=1e-15)
     np.testing.assert_allclose(result.albedo()[0], sum(value for value, _ in parts), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("estimators", "batches", "expected"),
+    [
+        # Batches that scatter together, up and down by a tenth; one component against the other; nothing known; two runs.
+        (("split", "split"), (1.0, 1.0), "sum"),
+        (("split", "split"), (1.0, -1.0), "difference"),
+        (("split", "split"), None, "sum"),
+        (("split", "analog"), (1.0, 0.0), "quadrature"),
+    ],
+    ids=["together", "against", "unknown", "apart"],
+)
+def test_two_components_of_other_estimators_add_up(estimators, batches, expected):
+    names = ("reflection/internal", "transmission")
+    result = make_result(components=names, estimator=dict(zip(names, estimators, strict=True)))
+    parts = [result.components[name] for name in names]
+    for part, sign in zip(parts, batches or (), strict=False):
+        if part.batches is not None:
+            mean = part.batches.mean(axis=1, keepdims=True)
+            part.batches = mean + sign * (part.batches - mean)
+    if batches is None:
+        parts[0].batches = None
+    a, b = (part.albedo_stderr for part in parts)
+    stderr = {"sum": a + b, "difference": abs(a - b), "quadrature": np.hypot(a, b)}[expected]
+    np.testing.assert_allclose(result.albedo()[1], stderr, rtol=1e-9)
+
+
+def test_the_estimator_of_a_result_is_that_of_its_parts():
+    assert (
+        make_result().estimator == "analog" and make_result(components=("reflection/direct",)).estimator == "integrated"
+    )
+    result = make_result(estimator={"transmission": "split"})
+    assert result.estimator == "mixed" and "sampled (split)," in repr(result.components["transmission"])
+    assert make_result(estimator="split").estimator == "split"
+    result.components["transmission"].energy[0, 1] = 0.0
+    value, stderr = result.albedo("transmission")
+    assert stderr[0, 1] == 1.5 / result.rays[0] > 0.0 and stderr[0, 0] != stderr[0, 1]
 
 
 @pytest.mark.parametrize("name", [None, "reflection/internal/order_2"])
@@ -54,7 +95,9 @@ def test_sums_over_cells_have_the_error_of_sums_over_paths(name):
         for component in (side, side.orders["order_2"]):
             component.energy, component.stderr = value[None, None], error[None, None]
             component.hits = (paths > 0).sum(axis=-1)[None]
-    result.audit.direct_integrated[:] = result.audit.direct_integrated_stderr[:] = 0.0
+            fill(component, 500)
+    direct = result.components["reflection/direct"]
+    direct.albedo[:] = direct.albedo_stderr[:] = 0.0
     total = (made if name is None else made[0]).reshape(-1, 500).sum(axis=0)
     value, error = result.albedo(name)
     assert value[0, 0] == pytest.approx(total.mean(), rel=1e-12)
@@ -66,8 +109,7 @@ def test_what_was_not_seen_is_bounded_and_what_was_not_traced_is_not_known():
     component = result.components["transmission"]
     for array in (component.hits, component.energy, component.stderr):
         array[0] = 0
-    for numbers in (result.audit.energy, result.audit.stderr):
-        numbers["transmitted"][0] = 0.0
+    fill(component, 100_000)
     result.rays[1] = 0
     value, stderr = result.albedo("transmission")
     assert (value[0] == 0.0).all() and stderr[0] == pytest.approx(1.5 / result.rays[0])

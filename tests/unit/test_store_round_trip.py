@@ -38,8 +38,9 @@ def assert_same(one, other, where="result"):
         {"components": ("reflection/direct", "reflection/internal"), "channels": ("赤", "vert", "b l u e")},
         {"components": ("reflection/direct",), "status": "partial", "seed": 2**63 - 1},
         {"theta_deg": [30.0], "rows": 1, "columns": 1},
+        {"orders": 2, "rows": 20, "columns": 37, "estimator": {"transmission": "split"}},
     ],
-    ids=["full", "orders", "channels", "partial", "one-cell"],
+    ids=["full", "orders", "channels", "partial", "one-cell", "batches"],
 )
 def test_everything_comes_back(tmp_path, options):
     """Eleven orders, because the names of order 10 and order 2 sort differently as text."""
@@ -56,7 +57,7 @@ def test_everything_comes_back(tmp_path, options):
 def test_without_a_checkpoint(tmp_path):
     """A run stopped at once has an empty cost table."""
     written = make_result(status="partial")
-    empty = np.empty(0)
+    empty = np.empty((2, 0))
     written.cost = dataclasses.replace(
         written.cost,
         rays=empty,
@@ -95,12 +96,13 @@ def test_header(tmp_path):
     write_result(result, tmp_path / "result.h5")
     assert read_header(tmp_path / "result.h5") == {
         "filetype": "goniosim-result",
-        "schema_version": "1.1",
+        "schema_version": "1.2",
         "config_yaml": result.config_yaml,
         "config_hash": result.config_hash,
         "seed": 7,
         "status": "partial",
         "name": "synthetic",
+        "estimator": "analog",
         **result.provenance,
     }
 
@@ -121,7 +123,7 @@ def test_the_file_begins_with_the_signature_of_hdf5(tmp_path):
     write_result(make_result(), tmp_path / "result.h5")
     content = (tmp_path / "result.h5").read_bytes()
     assert content.startswith(b"\x89HDF\r\n\x1a\n") and b"".join(encode(make_result())) == content
-    assert content.index(b"goniosim result, schema 1.1") + 512 <= 8192
+    assert content.index(b"goniosim result, schema 1.2") + 512 <= 8192
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

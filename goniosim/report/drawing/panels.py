@@ -129,7 +129,7 @@ def without_cell(slices, number):
 
 
 def unseen_cells(components, cells, direction):
-    """Cells that no path hit and that no integration lights.
+    """Cells that no path is known to have hit and that no integration lights.
 
     Parameters
     ----------
@@ -143,9 +143,9 @@ def unseen_cells(components, cells, direction):
     ndarray of bool, shape (R, K), or None
         None if nothing is sampled, or every valid cell was hit.
     """
-    hits = [component.hits[direction] for component in components if component.hits is not None]
-    if not hits:
+    if not any(component.sampled for component in components):
         return None
+    hits = [component.hits[direction] for component in components if component.hits is not None]
     dark = np.all([component.energy[direction].max(axis=0) <= 0.0 for component in components], axis=0)
     unseen = dark & np.all([number == 0 for number in hits], axis=0) & cells.valid[direction]
     return unseen if unseen.any() else None

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...albedo import SAMPLED_ENTRY
+from ...albedo import arrived
 from .. import text
 from .losses import masking_lines
 
@@ -41,17 +41,9 @@ def albedos(result):
     -------
     dict of str to (ndarray, ndarray), each of shape (M, C)
         Fraction of the incident energy in the component, and its standard error: that of the
-        integration for the direct reflection, that of the audit for sampled components.
+        integration for the direct reflection, that of sums over cells that share their paths for others.
     """
-    audit = result.audit
-    pairs = {}
-    for name in result.components:
-        if name in SAMPLED_ENTRY:
-            entry = SAMPLED_ENTRY[name]
-            pairs[name] = (audit.energy[entry], audit.stderr[entry])
-        else:
-            pairs[name] = (audit.direct_integrated, audit.direct_integrated_stderr)
-    return pairs
+    return {name: (component.albedo, component.albedo_stderr) for name, component in result.components.items()}
 
 
 def albedo_lines(result):
@@ -67,8 +59,8 @@ def albedo_lines(result):
 
 
 def _albedo(result, name, value, stderr, i, c):
-    hits = result.components[name].hits
-    if hits is not None and not hits[i].any():
+    component = result.components[name]
+    if component.sampled and not arrived(component)[i, c]:
         # Not seen is not zero: this is its limit at 95 % confidence.
         return f"< {RULE_OF_THREE / result.rays[i]:.1g}"
     return text.with_error(value[i, c], stderr[i, c])

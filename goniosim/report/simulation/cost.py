@@ -20,23 +20,24 @@ def cost_lines(result):
     list of str
     """
     cost = result.cost
-    if len(cost.rays) == 0:
+    if not cost.checkpoints:
         return []
-    sampled = list(cost.error)
-    header = ["rays per direction", "seconds", "CPU seconds", *(f"noise {name}\n[sr^-1/2]" for name in sampled)]
+    noise = {name: cost.noise(name) for name in cost.error}
+    rays, elapsed, cpu_seconds = cost.rays.mean(axis=0), cost.elapsed, cost.cpu_seconds.sum(axis=0)
+    header = ["rays per direction", "seconds", "CPU seconds", *(f"noise {name}\n[sr^-1/2]" for name in noise)]
     rows = [
         [
-            text.count(round(cost.rays[p])),
-            f"{cost.seconds[p]:.2f}",
-            f"{cost.cpu_seconds[p]:.2f}",
-            *(f"{cost.error[name][p]:.2e}" for name in sampled),
+            text.count(round(rays[p])),
+            f"{elapsed[p]:.2f}",
+            f"{cpu_seconds[p]:.2f}",
+            *(f"{error[p]:.2e}" for error in noise.values()),
         ]
-        for p in _spread(len(cost.rays))
+        for p in _spread(cost.checkpoints)
     ]
     lines = ["Cost (noise: standard error integrated over the slice, the floor of an RMSE, in sr^-1/2)"]
     lines += text.table(header, rows)
     total = float(result.rays.sum())
-    seconds, cpu_seconds = float(cost.seconds[-1]), float(cost.cpu_seconds[-1])
+    seconds, cpu_seconds = float(elapsed[-1]), float(cpu_seconds[-1])
     if seconds > 0.0 and cpu_seconds > 0.0:
         lines.append(
             f"  {text.count(total)} rays in {text.duration(seconds)}: {text.rate(total / seconds)}, "

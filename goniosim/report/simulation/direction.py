@@ -107,7 +107,7 @@ def _row(figure, board, top, result, i, name, numbers):
         words = f"± {_reach(shown):.2g}°"
         board.closer(CLOSER, top + 0.05, CLOSER_SIZE, slices, near, scale, unseen, words)
     highest = inplane.highest(*clear[1:], panels.BAND_SIGMAS)
-    plane = _curves(figure, top + 0.05, result.channels, theta_deg, component.hits is not None, curve, highest, shown)
+    plane = _curves(figure, top + 0.05, result.channels, theta_deg, component.sampled, curve, highest, shown)
     return plane, shown is not None
 
 
@@ -157,7 +157,7 @@ def _caption(result, i, name):
     else:
         parts = ["albedo  " + "  ".join(f"{label} {value[i, c]:.3g}" for label, c in groups)]
     energy = component.energy[i].sum()
-    if component.hits is not None and energy > 0.0:
+    if component.sampled and energy > 0.0:
         noise = 100.0 * component.stderr[i].sum() / energy
         rays = f"{text.count(result.rays[i])} rays" + (" (partial)" if result.status == "partial" else "")
         parts.append(f"noise of a cell about {noise:.2g} % after {rays}")

@@ -25,8 +25,9 @@ def row(result, path):
     traced = result.rays > 0
     albedo = [float(np.mean(value[traced])) for value, _ in albedos(result).values()]
     lost = sum(energy for name, energy in result.audit.energy.items() if name.startswith("lost_masked"))
-    noise = max((float(error[-1]) for error in result.cost.error.values() if len(error)), default=0.0)
-    seconds = float(result.cost.seconds[-1]) if len(result.cost.seconds) else 0.0
+    cost = result.cost
+    noise = max((float(cost.noise(name)[-1]) for name in cost.error if cost.checkpoints), default=0.0)
+    seconds = float(cost.elapsed[-1]) if cost.checkpoints else 0.0
     return [
         result.name,
         result.status,

@@ -8,6 +8,9 @@ import numpy as np
 from .. import text
 from . import audit, cost, losses
 
+# A smaller share of the energy in uncertain cells is not worth a word.
+NEGLIGIBLE = 1e-3
+
 
 def summary(result, path=None):
     """Describe a result in the words and tables shown after a simulation.
@@ -64,13 +67,30 @@ def heading_lines(result):
         f"{result.name}  ({result.status})",
         f"  incident theta [deg]: {', '.join(text.angles(result.theta_deg))}",
         f"  {slices}, channels {', '.join(result.channels)}",
-        f"  rays per direction: {text.counts(result.rays)}, seed {result.seed}",
+        f"  rays per direction: {text.counts(result.rays)}, seed {result.seed}, estimator {result.estimator}",
     ]
     for name, component in result.components.items():
         if component.contains_delta:
             lines.append(f"  {name} contains a perfectly sharp (Dirac) part; its cell holds a cell average")
         if component.orders:
             lines.append(f"  {name} is also split by order: {', '.join(component.orders)}")
+        lines += _doubts(result, name)
+    return lines
+
+
+def _doubts(result, name):
+    """What to beware of in a component: cells that few paths reached, and what its nodes may be off by."""
+    component = result.components[name]
+    held = _uncertain_energy(component)
+    lines = []
+    if held is not None and held > NEGLIGIBLE:
+        lines.append(
+            f"  {name}: {100.0 * held:.2g} % of its energy lies in uncertain cells, which too few paths reached"
+        )
+    if component.node_bias is not None and component.node_bias.any():
+        lines.append(
+            f"  {name}: nodes may add an error of up to {component.node_bias.max():.1g} sr^-1/2, whatever the noise"
+        )
     return lines
 
 
@@ -84,20 +104,28 @@ def as_data(result):
     Returns
     -------
     dict
-        Arrays over directions and channels are nested lists ``[direction][channel]``.
+        Arrays over directions and channels are nested lists ``[direction][channel]``, those of the cost
+        ``[direction][checkpoint]``.
     """
     rows, columns = result.cells.valid.shape[1:]
     return {
         "name": result.name,
         "status": result.status,
         "seed": int(result.seed),
+        "estimator": result.estimator,
         "theta_deg": result.theta_deg.tolist(),
         "phi_deg": result.phi_deg.tolist(),
         "rays": result.rays.tolist(),
         "channels": list(result.channels),
         "slice": {"parametrization": result.cells.parametrization, "rows": rows, "columns": columns},
         "components": {
-            name: {"contains_delta": bool(component.contains_delta), "orders": list(component.orders)}
+            name: {
+                "contains_delta": bool(component.contains_delta),
+                "orders": list(component.orders),
+                "estimator": list(component.estimator),
+                "uncertain_energy": _uncertain_energy(component),
+                "node_bias": None if component.node_bias is None else component.node_bias.tolist(),
+            }
             for name, component in result.components.items()
         },
         "albedo": {
@@ -116,6 +144,13 @@ def as_data(result):
         "config_yaml": result.config_yaml,
         "config_hash": result.config_hash,
     }
+
+
+def _uncertain_energy(component):
+    """Share of the energy of a component that lies in uncertain cells; None if nothing is sampled or arrived."""
+    if not component.sampled or not component.energy.any():
+        return None
+    return float(component.energy[component.uncertain].sum() / component.energy.sum())
 
 
 def _lists(value):
