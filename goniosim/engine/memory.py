@@ -97,7 +97,7 @@ def memory_needed(scene):
     Memory
         An upper estimate: all cells are taken to be hit.
     """
-    return _needed(make_plan(scene), scene.simulation.rays, threads_of(scene))
+    return _needed(make_plan(scene), scene.simulation.most_rays, threads_of(scene))
 
 
 def threads_of(scene):
@@ -180,7 +180,7 @@ def shortage(scene):
         return None
     # What this process holds already is part of the need.
     room = free[0] + resident_memory()
-    plan, rays, threads = make_plan(scene), scene.simulation.rays, threads_of(scene)
+    plan, rays, threads = make_plan(scene), scene.simulation.most_rays, threads_of(scene)
     needed = _needed(plan, rays, threads)
     if needed.peak <= room:
         return None

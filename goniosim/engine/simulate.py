@@ -14,6 +14,7 @@ from ..provenance import provenance
 from ..result import Cost, Result
 from ..scene import CHANNELS, effects, with_arguments
 from . import estimate
+from .asked import require_known
 from .direct import direct_reflection
 from .faint import faint_weights
 from .layout import DOWN, UP
@@ -26,20 +27,22 @@ from .unit import Tally, Workspace, unit_key
 _POLL_SECONDS = 0.1
 
 
-def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):
+def simulate(scene, *, progress=None, stop=None, **given):
     """Shoot rays at a scene and return its slices with their error bars.
 
     Parameters
     ----------
     scene : goniosim.scene.Scene
-    rays, seed, threads : int, optional
-        Override what the scene says. The result does not depend on ``threads``; the default
-        is every core this process may use.
     progress : callable, optional
-        Called as ``progress(done_rays, total_rays)`` a few times a second, from this thread.
+        Called as ``progress(done_rays, total_rays)`` a few times a second, from this thread;
+        ``total_rays`` is that of the scene, None where a target decides.
     stop : threading.Event, optional
         When set, tracing ends within a second; the result holds the finished work units and
         has the status ``partial``. Ctrl-C itself is left to the caller.
+    **given
+        In the place of what the scene says: ``rays``, ``seed``, ``threads`` and the others of
+        `goniosim.scene.with_arguments`. The result does not depend on ``threads``; the default
+        is every core this process may use.
 
     Returns
     -------
@@ -48,13 +51,14 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     Raises
     ------
     goniosim.errors.ConfigError
-        If ``rays``, ``seed`` or ``threads`` is out of range.
+        If an argument is out of range, or the engine cannot do what is asked.
     goniosim.errors.ResourceError
         If it does not fit into the memory that is free.
     goniosim.errors.StoppedError
         If it was stopped before any work unit was finished.
     """
-    scene = with_arguments(scene, {"rays": rays, "seed": seed, "threads": threads})
+    scene = with_arguments(scene, given)
+    require_known(scene.simulation)
     require_memory(scene)
     try:
         return _simulate(scene, make_plan(scene), granted_threads(threads_of(scene)), progress, stop)

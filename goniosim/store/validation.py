@@ -78,6 +78,7 @@ def _are_texts(header: Header, *names: str) -> bool:
 HEADER = (
     Rule("name", FileName.rule.removeprefix("must "), lambda header: is_file_name(header.get("name"))),
     Rule("status", "be complete or partial", lambda header: header.get("status") in ("complete", "partial")),
+    Rule("target_reached", "be 0 or 1, or absent", lambda header: header.get("target_reached", 0) in (0, 1)),
     Rule("seed", "be a whole number", lambda header: isinstance(header.get("seed"), int)),
     Rule("config_hash", "be 64 hexadecimal digits", lambda header: is_hash(header.get("config_hash"))),
     Rule("schema_version", "be MAJOR.MINOR", lambda header: is_version(header.get("schema_version"))),
@@ -132,10 +133,14 @@ GEOMETRY = (
 RESULT = (
     Rule(
         "incident/rays",
-        "be those in config_yaml, or fewer if status is partial",
+        "be those in config_yaml, or fewer if status is partial or a target decides",
         lambda result, scene: (
-            (result.rays <= scene.simulation.rays).all()
-            and (result.status == "partial" or (result.rays == scene.simulation.rays).all())
+            (result.rays <= scene.simulation.most_rays).all()
+            and (
+                result.status == "partial"
+                or scene.simulation.target is not None
+                or (result.rays == scene.simulation.rays).all()
+            )
         ),
     ),
     Rule(
