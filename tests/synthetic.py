@@ -11,7 +11,7 @@ material:
 {layers}\
 incident: {{theta_deg: {theta_deg}}}
 slice: {{parametrization: {parametrization}, rows: {rows}, columns: {columns}}}
-simulation: {{rays: {rays}, seed: {seed}{orders}}}
+simulation: {{{measure}, seed: {seed}{orders}}}
 """
 COATED = """\
     - interface: {type: dielectric, eta: 1.5, alpha: 0.2}
@@ -37,6 +37,8 @@ def make_result(
     name="synthetic",
     config_yaml=None,
     seed=1,
+    target=None,
+    target_reached=None,
 ):
     """Make up a result: hits are Poisson counts, energies carry continuous weights as absorption gives.
 
@@ -58,6 +60,9 @@ def make_result(
         A scene to which all this belongs by default.
     seed : int
         Of the made-up numbers, and the seed that the result claims.
+    target : str, optional
+        What stands in the scene under ``target`` instead of the rays.
+    target_reached : bool, optional
 
     Returns
     -------
@@ -74,7 +79,7 @@ def make_result(
         parametrization=parametrization,
         rows=rows,
         columns=columns,
-        rays=rays,
+        measure=f"target: {target}" if target else f"rays: {rays}",
         seed=seed,
         orders=f", orders: {orders}" if orders else "",
     )
@@ -99,6 +104,7 @@ def make_result(
             "processor": "imaginary",
             "threads": "2",
         },
+        target_reached=target_reached,
     )
 
 

@@ -93,6 +93,11 @@ HEADER = (
 HEADER_AND_SCENE = (
     Rule("name", "be that in config_yaml", lambda header, scene: header["name"] == scene.material.name),
     Rule("seed", "be that in config_yaml", lambda header, scene: header["seed"] == scene.simulation.seed),
+    Rule(
+        "target_reached",
+        "be there only if config_yaml has a target",
+        lambda header, scene: "target_reached" not in header or scene.simulation.target is not None,
+    ),
 )
 
 # For whatever has directions, channels and cells: a result, or a material of a file of models.

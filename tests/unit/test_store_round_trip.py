@@ -38,8 +38,10 @@ def assert_same(one, other, where="result"):
         {"components": ("reflection/direct", "reflection/internal"), "channels": ("赤", "vert", "b l u e")},
         {"components": ("reflection/direct",), "status": "partial", "seed": 2**63 - 1},
         {"theta_deg": [30.0], "rows": 1, "columns": 1},
+        {"target": "{relative_error: 1%, of: cells}", "target_reached": True},
+        {"target": "{relative_error: 1%}, max_rays: 1e5", "target_reached": False},
     ],
-    ids=["full", "orders", "channels", "partial", "one-cell"],
+    ids=["full", "orders", "channels", "partial", "one-cell", "reached", "missed"],
 )
 def test_everything_comes_back(tmp_path, options):
     """Eleven orders, because the names of order 10 and order 2 sort differently as text."""
