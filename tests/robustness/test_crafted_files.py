@@ -125,7 +125,7 @@ CASES = {
     "target-reached": (number("/", "target_reached", np.uint64(2)), "target_reached must be 0 or 1, or absent"),
     "target-none": (
         number("/", "target_reached", np.uint64(1)),
-        "target_reached must be there only if config_yaml has",
+        "target_reached must be there only if",
     ),
     "seed-text": (text("/", "seed", "1"), "seed must be a whole number"),
     "seed-other": (number("/", "seed", np.uint64(5)), "seed must be that in config_yaml"),
