@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, overrides_of, rays_option, set_option, threads_option
+from .options import PATH, overrides_of, set_option, simulation_options
 from .policy import debug_option
 
 
@@ -18,12 +18,11 @@ from .policy import debug_option
     metavar="OUT",
     help="See also whether OUT, the result file or the folder of a study, can be written and has room on its disk.",
 )
-@rays_option
-@threads_option
+@simulation_options
 @set_option
 @click.option("--json", "as_json", is_flag=True, help="For programs: seconds, bytes and effects as JSON.")
 @debug_option
-def check(config, output, rays, threads, overrides, as_json):
+def check(config, output, overrides, as_json, **asked):
     """Validate CONFIG and predict time, file size and memory.
 
     CONFIG is a scene or a study file, or - for the standard input. The time is predicted from a short
@@ -38,7 +37,7 @@ def check(config, output, rays, threads, overrides, as_json):
 
     from . import jobs
 
-    described = load_config(config, [*overrides, *overrides_of(rays=rays, threads=threads)])
+    described = load_config(config, [*overrides, *overrides_of(asked)])
     scenes, many = described.scenes, described.study is not None
     if output:
         jobs.require_room(jobs.plan(scenes, output, folder=Path(output) if many else None))

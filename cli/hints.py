@@ -19,6 +19,11 @@ COMMANDS = {
 }
 OPTIONS = {
     "--rays": "samples spp n nrays numrays nsamples photons r count",
+    "--target": "tolerance tol rtol error maxerror relativeerror targeterror accuracy noise epsilon eps",
+    "--of": "metric norm quantity",
+    "--max-rays": "maxsamples maxspp raylimit",
+    "--max-time": "timeout timelimit time budget timebudget maxseconds walltime",
+    "--estimator": "method integrator algorithm e",
     "--threads": "nthreads numthreads workers cores jobs j t cpus processes",
     "--output": "out outfile outputfile outdir outputdir dir folder output",
     "--seed": "randomseed rng s",

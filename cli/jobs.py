@@ -26,14 +26,9 @@ class Job:
         """Name of the material."""
         return self.scene.material.name
 
-    @property
-    def rays(self):
-        """Rays of all incident directions together."""
-        return self.scene.total_rays
-
     def is_finished(self, standing):
-        """Whether a `goniosim.store.Standing`, if there is one, holds all rays that are asked for."""
-        return standing is not None and standing.holds(self.scene.simulation.rays)
+        """Whether a `goniosim.store.Standing`, if there is one, holds what is asked for."""
+        return standing is not None and standing.holds(self.scene.simulation)
 
     def reserve(self):
         """Make sure that the file can be written, and keep room for it."""
@@ -77,7 +72,9 @@ def sort_out(planned, overwrite, note):
 
     Returns
     -------
-    list of Job
+    todo : list of Job
+    missed : list of str
+        A line for each file that stays although its target was not reached, since nothing more is asked for.
 
     Raises
     ------
@@ -85,6 +82,7 @@ def sort_out(planned, overwrite, note):
         There is no folder for the files, or something stands in the way: all files at once, with what each of them
         differs in.
     """
+    from goniosim.report.simulation.target import shortfall
     from goniosim.store import refuse_newer, reserve_output
 
     make_folder(planned[0].path.parent)
@@ -101,7 +99,13 @@ def sort_out(planned, overwrite, note):
         reserve_output(job.path, 0).release()
     if kept:
         note(_kept(kept, len(planned)))
-    return todo
+    # By whoever asks for rays, the target of a file is not missed.
+    missed = [
+        f"{job.path}: {shortfall(kept[job.path].simulation)}"
+        for job in planned
+        if job.path in kept and job.scene.simulation.target is not None and kept[job.path].target_reached is False
+    ]
+    return todo, missed
 
 
 def _look_at(planned):
@@ -111,7 +115,7 @@ def _look_at(planned):
     found, foreign = {}, []
     for job in planned:
         try:
-            standing = look_at(job.path, job.scene, job.scene.simulation.rays)
+            standing = look_at(job.path, job.scene)
         except OutputError as error:
             foreign.append(error)
         else:
@@ -139,7 +143,9 @@ def _kept(kept, planned):
     if planned == 1:
         ((path, standing),) = kept.items()
         words = " (partial)" if standing.status == "partial" else ""
-        return f"{path} stays as it is{words}: it holds {held} rays per direction of this scene"
+        target = standing.simulation.target
+        accuracy = f", by a target of {target}" if target is not None else ""
+        return f"{path} stays as it is{words}: it holds {held} rays per direction of this scene{accuracy}"
     partial = sum(standing.status == "partial" for standing in kept.values())
     what = f"have enough rays, though {partial} of them partial" if partial else "are finished"
     return f"{len(kept)} of {planned} materials {what}: skipped (their files hold {held} rays per direction)"
@@ -178,7 +184,7 @@ def run(jobs, progress, signals, verbose, overwrite=False):
     from goniosim._jit.folder import notices
     from goniosim.report.simulation.forecast import effects_text
     from goniosim.report.simulation.losses import event_cap
-    from goniosim.report.text import duration
+    from goniosim.report.text import counts, duration
     from goniosim.store import write_result
 
     for number, job in enumerate(jobs, 1):
@@ -205,8 +211,11 @@ def run(jobs, progress, signals, verbose, overwrite=False):
                 progress.note(f"stopped by {signals.name}: {error.fact}" if signals.signum else error.fact)
                 continue
         if result.status == "partial":
-            percent = 100.0 * result.rays.sum() / job.rays
-            progress.note(f"stopped by {signals.name}: {job.path} holds {percent:.3g} % of the rays (partial)")
+            total = job.scene.total_rays
+            held = f"{counts(result.rays)} rays per direction"
+            if total is not None:
+                held = f"{100.0 * result.rays.sum() / total:.3g} % of the rays"
+            progress.note(f"stopped by {signals.name}: {job.path} holds {held} (partial)")
         if warning := event_cap(result):
             progress.note(f"{label}: {warning}")
         yield job, result

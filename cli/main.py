@@ -39,7 +39,8 @@ Exit codes:
   6    the file is damaged
   7    the file is of a newer goniosim
   8    the result cannot be used for what was asked
-  9    the operating system or an environment variable stands in the way
+  9    a target was not reached within its limits; the result is in the output file
+  10   the operating system or an environment variable stands in the way
   129  the terminal was closed (SIGHUP); what was gathered is in the output file
   130  stopped by Ctrl-C; what was gathered is in the output file
   143  stopped by SIGTERM; what was gathered is in the output file

@@ -83,17 +83,72 @@ def _overrides(ctx, param, values):
     return [Override(value, f"--set {value}") for value in values]
 
 
-def overrides_of(**given):
+class Quantity(click.ParamType):
+    """A number that may have a unit, as the scene knows it: ``1%``, ``10m``."""
+
+    def __init__(self, name, kind):
+        self.name = name
+        self._kind = kind
+
+    def convert(self, value, param, ctx):
+        """Return the text, if it is one that the scene takes."""
+        from goniosim.scene import target
+
+        if flaw := getattr(target, self._kind)().flaw(value):
+            self.fail(f"{value!r} {flaw}", param, ctx)
+        return value
+
+
+# As in goniosim/scene, which is not loaded for help.
+ESTIMATORS = ("auto", "analog", "split", "operator", "connection")
+OF = ("slice", "albedo", "cells")
+
+# What options of the same name stand for, where that is no value right under `simulation`.
+PATHS = {"target": "target.relative_error", "of": "target.of"}
+
+
+def simulation_options(command):
+    """Add the options that stand for values under ``simulation``, for `overrides_of`."""
+    for option in reversed(SIMULATION_OPTIONS):
+        command = option(command)
+    return command
+
+
+def overrides_of(given):
     """Changes of the scene for options that stand for values under ``simulation``; None is no change."""
     from goniosim.scene import Override
 
     asked = {name: value for name, value in given.items() if value is not None}
-    return [Override(f"simulation.{name}={value}", f"--{name} {value}") for name, value in asked.items()]
+    if {"rays", "target"} <= asked.keys():
+        raise click.UsageError("--target decides how many rays are traced: give it or --rays")
+    return [
+        Override(f"simulation.{PATHS.get(name, name)}={value}", f"--{name.replace('_', '-')} {value}")
+        for name, value in asked.items()
+    ]
 
 
-rays_option = click.option("--rays", type=Count(), metavar="N", help="Rays per incident direction, such as 1e7.")
-threads_option = click.option(
-    "--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default."
+SIMULATION_OPTIONS = (
+    click.option("--rays", type=Count(), metavar="N", help="Rays per incident direction, such as 1e7."),
+    click.option(
+        "--target",
+        type=Quantity("share", "Share"),
+        metavar="ERROR",
+        help="Instead of rays, stop at a relative error: 1% or 0.01, in each direction and component.",
+    ),
+    click.option(
+        "--of",
+        type=click.Choice(OF),
+        help="What it is the error of [default: slice, its noise over its norm].",
+    ),
+    click.option("--max-rays", type=Count(), metavar="N", help="Rays per direction at most, with a target."),
+    click.option(
+        "--max-time",
+        type=Quantity("time", "TimeSpan"),
+        metavar="TIME",
+        help="Time per material at most, with a target: seconds, or 90s, 10m, 2h or 1h30m.",
+    ),
+    click.option("--estimator", type=click.Choice(ESTIMATORS), help="How to estimate [default: auto]."),
+    click.option("--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default."),
 )
 set_option = click.option(
     "--set",

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, Count, overrides_of, rays_option, set_option, threads_option
-from .policy import debug_option, say
+from .options import PATH, Count, overrides_of, set_option, simulation_options
+from .policy import debug_option, say, say_error
 from .signals import StopSignals
 
 
@@ -19,53 +19,61 @@ from .signals import StopSignals
     metavar="OUT",
     help="Result file, or the folder of a study's files [default: the name of the material or study].",
 )
-@rays_option
+@simulation_options
 @click.option("--seed", type=Count(), metavar="S", help="Seed of the random numbers.")
-@threads_option
 @set_option
 @click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays, without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("-v", "--verbose", is_flag=True, help="Also show effects and compilation time.")
 @debug_option
 @click.pass_context
-def simulate(ctx, config, output, rays, seed, threads, overrides, overwrite, quiet, verbose):
+def simulate(ctx, config, output, overrides, overwrite, quiet, verbose, **asked):
     """Simulate a scene or study file and write the result.
 
     CONFIG is the file, or - for the standard input. A study writes one file per material into a folder.
-    A file that holds the rays asked for, or more, stays as it is; one with fewer is replaced; the result
-    of another scene is an error. Ctrl-C stops within two seconds and keeps what was gathered, marked as
-    partial.
+    A file that holds the rays or the accuracy asked for, or more, stays as it is; one with less is
+    replaced; the result of another scene is an error. Ctrl-C stops within two seconds and keeps what was
+    gathered, marked as partial. A target that --max-rays or --max-time cut short leaves a result, and
+    exit code 9.
 
     \b
     Examples: goniosim simulate quickstart.yaml
               goniosim simulate quickstart.yaml --rays 1e7 --set simulation.orders=3
+              goniosim simulate quickstart.yaml --target 1% --max-time 10m
     """  # noqa: D301
     if output == "-":
         raise click.UsageError("a result is a file, not a stream: name it with -o")
     from goniosim.engine import require_memory
+    from goniosim.errors import TARGET_NOT_REACHED
     from goniosim.report.progress import make_progress
-    from goniosim.report.simulation import study
+    from goniosim.report.simulation import study, target
     from goniosim.report.simulation.summary import summary
-    from goniosim.scene import load_config
+    from goniosim.scene import load_config, total_rays
 
     from . import jobs
 
-    described = load_config(config, [*overrides, *overrides_of(rays=rays, seed=seed, threads=threads)])
+    described = load_config(config, [*overrides, *overrides_of(asked)])
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
     notes = []
-    todo = jobs.sort_out(planned, overwrite, notes.append)
+    todo, missed = jobs.sort_out(planned, overwrite, notes.append)
     for job in todo:
         require_memory(job.scene)
-    progress = make_progress(sum(job.rays for job in todo), quiet)
+    progress = make_progress(total_rays(job.scene for job in todo), quiet)
     done = []
     with StopSignals() as signals, contextlib.closing(progress):
         for note in notes:
             progress.note(note)
         for job, result in jobs.run(todo, progress, signals, verbose, overwrite):
             done.append(study.row(result, job.path) if many else summary(result, job.path))
+            if result.target_reached is False and result.status == "complete":
+                missed.append(f"{job.path}: {target.shortfall(job.scene.simulation)}")
             del result
     if done and not quiet:
         say(study.study_text(done) if many else done[0])
+    for line in missed:
+        say_error(line)
     if signals.signum is not None:
         ctx.exit(signals.exit_code)
+    if missed:
+        ctx.exit(TARGET_NOT_REACHED)

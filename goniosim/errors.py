@@ -18,7 +18,9 @@ code  meaning
 6     the file is a goniosim result, but damaged
 7     the file was written by a newer, incompatible goniosim
 8     the result cannot be used for what was asked
-9     the operating system or an environment variable stands in the way
+9     a target was not reached within its limits; the result is in the
+      output file
+10    the operating system or an environment variable stands in the way
 129   the terminal was closed (SIGHUP); what was gathered is in the output file
 130   stopped by Ctrl-C; what was gathered is in the output file
 143   stopped by SIGTERM; what was gathered is in the output file
@@ -26,6 +28,9 @@ code  meaning
 """
 
 from collections.abc import Iterable
+
+# No error: the result is complete, and kept.
+TARGET_NOT_REACHED = 9
 
 
 class GoniosimError(Exception):
@@ -74,7 +79,7 @@ class FewerRaysError(OutputError):
     ----------
     path : path-like
     held, offered : str
-        Rays per direction of either.
+        Rays per direction of either, in the mean.
 
     Attributes
     ----------
@@ -130,4 +135,4 @@ class UnusableResultError(GoniosimError):
 class RefusalError(GoniosimError):
     """The operating system refuses something, or an environment variable makes it impossible."""
 
-    exit_code = 9
+    exit_code = 10

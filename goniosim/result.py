@@ -220,7 +220,7 @@ class Result:
     config_yaml : str
         The scene that was simulated, complete with defaults and overrides, as YAML.
     config_hash : str
-        Identity of the scene, see `goniosim.scene.Scene.config_hash`: not the name, not the rays, not the threads.
+        Identity of the scene, see `goniosim.scene.Scene.config_hash`: not the name, rays or target, threads.
     name : str
         Name of the material.
     status : str
@@ -242,6 +242,8 @@ class Result:
     provenance : dict of str to str
         Versions, processor, threads, creation time (``created_utc``,
         ``goniosim_version``, ...).
+    target_reached : bool or None
+        Whether the accuracy that the scene asks for was reached; None if it asks for rays.
     """
 
     config_yaml: str
@@ -259,6 +261,7 @@ class Result:
     cost: Cost
     effects: dict[str, bool]
     provenance: dict[str, str]
+    target_reached: bool | None = None
 
     @property
     def estimator(self) -> str:

@@ -13,7 +13,7 @@ material:
 {layers}\
 incident: {{theta_deg: {theta_deg}}}
 slice: {{parametrization: {parametrization}, rows: {rows}, columns: {columns}}}
-simulation: {{rays: {rays}, seed: {seed}{orders}}}
+simulation: {{{measure}, seed: {seed}{orders}}}
 """
 COATED = """\
     - interface: {type: dielectric, eta: 1.5, alpha: 0.2}
@@ -40,6 +40,8 @@ def make_result(
     config_yaml=None,
     seed=1,
     estimator="analog",
+    target=None,
+    target_reached=None,
 ):
     """Make up a result: hits are Poisson counts, energies carry continuous weights as absorption gives.
 
@@ -63,6 +65,9 @@ def make_result(
         Of the made-up numbers, and the seed that the result claims.
     estimator : str or dict of str to str
         Of the sampled components, or of each of them; others than ``analog`` keep batches and have nodes.
+    target : str, optional
+        What stands in the scene under ``target`` instead of the rays.
+    target_reached : bool, optional
 
     Returns
     -------
@@ -82,7 +87,7 @@ def make_result(
         parametrization=parametrization,
         rows=rows,
         columns=columns,
-        rays=rays,
+        measure=f"target: {target}" if target else f"rays: {rays}",
         seed=seed,
         orders=f", orders: {orders}" if orders else "",
     )
@@ -107,6 +112,7 @@ def make_result(
             "processor": "imaginary",
             "threads": "2",
         },
+        target_reached=target_reached,
     )
 
 

@@ -6,18 +6,18 @@ from typing import Any
 
 from ..errors import ConfigError
 
-Progress = bool | Callable[[int, int], object] | None
+Progress = bool | Callable[[int, int | None], object] | None
 
 
-def progress_of(progress: Progress, total_rays: int) -> AbstractContextManager[Any]:
+def progress_of(progress: Progress, total_rays: int | None) -> AbstractContextManager[Any]:
     """Choose how to show progress.
 
     Parameters
     ----------
     progress : bool, callable or None
         True for a bar, which notebooks show as a widget; or ``progress(done_rays, total_rays)``.
-    total_rays : int
-        Rays of all materials together.
+    total_rays : int or None
+        Rays of all materials together, None where targets decide.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def progress_of(progress: Progress, total_rays: int) -> AbstractContextManager[A
 class _Calls:
     """Calls a function with the rays of all materials so far and in all."""
 
-    def __init__(self, function: Callable[[int, int], object], total_rays: int) -> None:
+    def __init__(self, function: Callable[[int, int | None], object], total_rays: int | None) -> None:
         self._function = function
         self._total_rays = total_rays
         self._earlier_rays = 0
@@ -53,7 +53,7 @@ class _Calls:
         """A new material: earlier rays stay done."""
         self._earlier_rays = self._rays
 
-    def update(self, done_rays: int, total_rays: int) -> None:
+    def update(self, done_rays: int, total_rays: int | None) -> None:
         """Say how far this material has come."""
         self._rays = self._earlier_rays + done_rays
         self._function(self._rays, self._total_rays)

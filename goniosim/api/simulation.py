@@ -16,6 +16,11 @@ def simulate(
     rays: float | None = None,
     seed: float | None = None,
     threads: int | None = None,
+    estimator: str | None = None,
+    target: float | str | None = None,
+    of: str | None = None,
+    max_rays: float | None = None,
+    max_time: float | str | None = None,
     progress: Progress = None,
     stop: threading.Event | None = None,
 ) -> Result:
@@ -35,16 +40,28 @@ def simulate(
         Seed of the random numbers, instead of the scene's. The same seed gives the same bits for any number of threads.
     threads : int, optional
         Threads to use, instead of the scene's (or of all processors).
+    estimator : {"auto", "analog", "split", "operator", "connection"}, optional
+        How to estimate, instead of the scene's.
+    target : float or str, optional
+        Stop once the relative error is this small in every direction and component: ``0.01`` or ``"1%"``. It takes
+        the place of ``rays``.
+    of : {"slice", "albedo", "cells"}, optional
+        What the target is the error of, instead of the scene's: of the slice (default), of its energy, or of 95 % of
+        the cells that hold 95 % of it.
+    max_rays : int, optional
+        Rays per incident direction at most, where there is a target.
+    max_time : float or str, optional
+        Time at most, where there is a target: seconds, or ``"90s"``, ``"10m"``, ``"1h30m"``.
     progress : bool or callable, optional
         True for a progress bar; or a function, called as ``progress(done_rays, total_rays)`` a few times a
-        second.
+        second, with None in the place of the total where a target decides.
     stop : threading.Event, optional
         Once set, tracing ends within about a second.
 
     Returns
     -------
     goniosim.result.Result
-        With status ``partial`` if it was ended early.
+        With status ``partial`` if it was ended early. Its ``target_reached`` is False if one of the limits came first.
 
     Raises
     ------
@@ -64,7 +81,17 @@ def simulate(
       rays per direction: 1e4, seed 1
       mean albedo: reflection/direct 0.05577, reflection/internal 0.2559 ± 0.0012>
     """
-    scene = with_arguments(as_scene(scene), {"rays": rays, "seed": seed, "threads": threads})
+    given = {
+        "rays": rays,
+        "seed": seed,
+        "threads": threads,
+        "estimator": estimator,
+        "target": target,
+        "of": of,
+        "max_rays": max_rays,
+        "max_time": max_time,
+    }
+    scene = with_arguments(as_scene(scene), given)
     check_stop(stop)
     with progress_of(progress, scene.total_rays) as shown, Stop(stop) as asked:
         try:
@@ -81,7 +108,7 @@ def trace(scene: Scene, label: str, shown: Any, asked: Stop) -> Result:
 
     began = False
 
-    def report(done_rays: int, total_rays: int) -> None:
+    def report(done_rays: int, total_rays: int | None) -> None:
         nonlocal began
         if not began:
             began = asked.gathering = True

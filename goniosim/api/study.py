@@ -9,7 +9,7 @@ from typing import Any, TypeVar, overload
 
 from ..errors import FewerRaysError, OutputError, StoppedError
 from ..result import Result
-from ..scene import Scene, Source, as_scenes, with_arguments
+from ..scene import Scene, Source, as_scenes, total_rays, with_arguments
 from ..store import look_at, reserve_output, write_result
 from ..writing import StrPath, make_folder
 from .progress import Progress, progress_of
@@ -29,6 +29,11 @@ def simulate_study(
     rays: float | None = None,
     seed: float | None = None,
     threads: int | None = None,
+    estimator: str | None = None,
+    target: float | str | None = None,
+    of: str | None = None,
+    max_rays: float | None = None,
+    max_time: float | str | None = None,
     progress: Progress = None,
     stop: threading.Event | None = None,
 ) -> dict[str, Result]: ...
@@ -43,6 +48,11 @@ def simulate_study(
     rays: float | None = None,
     seed: float | None = None,
     threads: int | None = None,
+    estimator: str | None = None,
+    target: float | str | None = None,
+    of: str | None = None,
+    max_rays: float | None = None,
+    max_time: float | str | None = None,
     progress: Progress = None,
     stop: threading.Event | None = None,
 ) -> dict[str, Path]: ...
@@ -56,6 +66,11 @@ def simulate_study(
     rays: float | None = None,
     seed: float | None = None,
     threads: int | None = None,
+    estimator: str | None = None,
+    target: float | str | None = None,
+    of: str | None = None,
+    max_rays: float | None = None,
+    max_time: float | str | None = None,
     progress: Progress = None,
     stop: threading.Event | None = None,
 ) -> dict[str, Result] | dict[str, Path]:
@@ -71,10 +86,10 @@ def simulate_study(
         What `load_scenes` takes, or scenes.
     folder : path-like, optional
         Write each result into ``NAME.h5`` there as soon as it is done, instead of keeping all in memory.
-        Files that hold the rays asked for, or more, are left alone: calling again goes on.
+        Files that hold the rays or the accuracy asked for, or more, are left alone: calling again goes on.
     overwrite : bool
         Leave no file alone: simulate all anew, and replace whatever results stand there.
-    rays, seed, threads, progress, stop
+    rays, seed, threads, estimator, target, of, max_rays, max_time, progress, stop
         As for `simulate`, and for all materials; progress is that of the whole study.
 
     Returns
@@ -102,7 +117,16 @@ def simulate_study(
     >>> goniosim.simulate_study("study.yaml", rays=1e4, folder="coats")["coat-0.2"].name
     'coat-0.2.h5'
     """
-    given = {"rays": rays, "seed": seed, "threads": threads}
+    given = {
+        "rays": rays,
+        "seed": seed,
+        "threads": threads,
+        "estimator": estimator,
+        "target": target,
+        "of": of,
+        "max_rays": max_rays,
+        "max_time": max_time,
+    }
     scenes = [with_arguments(scene, given) for scene in as_scenes(study)]
     check_stop(stop)
     if folder is None:
@@ -128,7 +152,7 @@ def _run(
     stop: threading.Event | None,
 ) -> None:
     """Add ``one(scene, label, shown, asked)`` of each scene to what is kept, until somebody asks to stop."""
-    with progress_of(progress, sum(scene.total_rays for scene in scenes)) as shown, Stop(stop) as asked:
+    with progress_of(progress, total_rays(scenes)) as shown, Stop(stop) as asked:
         asked.gathering = bool(kept)
         for number, scene in enumerate(scenes, 1):
             name = scene.material.name
@@ -157,14 +181,14 @@ def _into_file(paths: Mapping[str, Path], overwrite: bool, scene: Scene, label: 
 
 
 def _finished(scenes: Iterable[Scene], paths: Mapping[str, Path]) -> list[str]:
-    """Names of the scenes whose files hold the rays asked for, or more; an OutputError if one holds another scene."""
+    """Names of the scenes whose files hold what is asked for; an OutputError if one holds another scene."""
     finished, others = [], []
     for scene in scenes:
         name = scene.material.name
-        found = look_at(paths[name], scene, scene.simulation.rays)
+        found = look_at(paths[name], scene)
         if found is not None and found.differences:
             others.append(f"{paths[name]}: holds the result of another scene ({'; '.join(found.differences)})")
-        if found is not None and found.holds(scene.simulation.rays):
+        if found is not None and found.holds(scene.simulation):
             finished.append(name)
     if others:
         raise OutputError(

@@ -19,20 +19,22 @@ from .probe import warm_up
 from .session import Session
 
 
-def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=None):
+def simulate(scene, *, progress=None, stop=None, **given):
     """Shoot rays at a scene and return its slices with their error bars.
 
     Parameters
     ----------
     scene : goniosim.scene.Scene
-    rays, seed, threads : int, optional
-        Override what the scene says. The result does not depend on ``threads``; the default
-        is every core this process may use.
     progress : callable, optional
-        Called as ``progress(done_rays, total_rays)`` a few times a second, from this thread.
+        Called as ``progress(done_rays, total_rays)`` a few times a second, from this thread;
+        ``total_rays`` is that of the scene, None where a target decides.
     stop : threading.Event, optional
         When set, tracing ends within a second; the result holds the finished work units and
         has the status ``partial``. Ctrl-C itself is left to the caller.
+    **given
+        In the place of what the scene says: ``rays``, ``seed``, ``threads`` and the others of
+        `goniosim.scene.with_arguments`. The result does not depend on ``threads``; the default
+        is every core this process may use.
 
     Returns
     -------
@@ -41,13 +43,13 @@ def simulate(scene, *, rays=None, seed=None, threads=None, progress=None, stop=N
     Raises
     ------
     goniosim.errors.ConfigError
-        If ``rays``, ``seed`` or ``threads`` is out of range.
+        If an argument is out of range, or the engine cannot do what is asked.
     goniosim.errors.ResourceError
         If it does not fit into the memory that is free.
     goniosim.errors.StoppedError
         If it was stopped before any work unit was finished.
     """
-    scene = with_arguments(scene, {"rays": rays, "seed": seed, "threads": threads})
+    scene = with_arguments(scene, given)
     require_memory(scene)
     try:
         return _simulate(scene, make_plan(scene), granted_threads(threads_of(scene)), progress, stop)
@@ -62,7 +64,7 @@ def _simulate(scene, plan, threads, progress, stop):
     stop = stop or threading.Event()
     warm_up(scene)
     direct = _integrate_direct(plan, threads, stop)
-    drive = Drive(threads, stop, progress or (lambda done, total: None))
+    drive = Drive(threads, stop, _progress_of(scene, progress))
     session = Session(plan, scene.simulation, drive)
     session.run()
     if not any(session.rays):
@@ -86,6 +88,14 @@ def _simulate(scene, plan, threads, progress, stop):
         provenance={**provenance(threads), "estimator_choice": session.reasons},
         target_reached=session.reached,
     )
+
+
+def _progress_of(scene, progress):
+    """Light paths of all runs, told in rays of the scene: an audit and further components are work too."""
+    if progress is None:
+        return lambda done, total: None
+    whole = scene.total_rays
+    return lambda done, total: progress(done if whole is None else whole * done // max(total, 1), whole)
 
 
 def _integrate_direct(plan, threads, stop):

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 from ..errors import ConfigError, DamagedFileError, ForeignFileError, GoniosimError, UnusableResultError
-from ..scene import parse_scene
+from ..scene import Target, parse_scene
 from ..store import is_models_file, read_header
 from . import text
 
@@ -23,8 +23,9 @@ def listing(paths):
     -------
     entries : list of dict
         Plain data that JSON can hold: ``file``, ``kind`` (``result``, ``models``, ``other`` or ``unreadable``),
-        ``bytes``; of a result also ``name``, ``status``, ``rays`` (asked for, per direction), ``theta_deg``,
-        ``slice``, ``seed`` and ``created_utc``; of what is not a sound result, ``message``.
+        ``bytes``; of a result also ``name``, ``status``, what was asked for (``rays`` per direction or ``target``,
+        None for the other; ``estimator``), ``theta_deg``, ``slice``, ``seed`` and ``created_utc``; of what is not a
+        sound result, ``message``.
     errors : list of GoniosimError
         Of the files that cannot be read, and of those that were named and are none of ours.
 
@@ -65,12 +66,12 @@ def description(entries):
         A table of the results; below it a line for each other file of ours or of others.
     """
     results = [entry for entry in entries if entry["kind"] == "result"]
-    header = ["file", "status", "rays asked for\nper direction", "theta\n[deg]", "slices", "written [UTC]", "size"]
+    header = ["file", "status", "asked for\nper direction", "theta\n[deg]", "slices", "written [UTC]", "size"]
     lines = text.table(header, map(_row, results)) if results else []
     partial = sum(entry["status"] == "partial" for entry in results)
     size = text.size(sum(entry["bytes"] for entry in results))
     number = f"{len(results)} result{'' if len(results) == 1 else 's'}"
-    lines.append(f"  {number}, {size}" + (f"; {partial} partial, with fewer rays than asked for" if partial else ""))
+    lines.append(f"  {number}, {size}" + (f"; {partial} partial, with less than asked for" if partial else ""))
     if results:
         lines.append("  From the headers alone; `goniosim info FILE` checks every byte.")
     lines += [f"  {entry['message']}" for entry in entries if entry["kind"] in ("models", "other")]
@@ -88,7 +89,7 @@ def _entry(path):
             **known,
             "kind": "result",
             **{key: header[key] for key in ("name", "status", "seed", "created_utc")},
-            "rays": scene.simulation.rays,
+            **scene.simulation.model_dump(include={"rays", "target", "estimator"}),
             "theta_deg": list(scene.incident.theta_deg),
             "slice": scene.slice.model_dump(),
         }
@@ -107,7 +108,7 @@ def _row(entry):
     return [
         name if name == f"{entry['name']}.h5" else f"{name} ({entry['name']})",
         entry["status"],
-        text.count(entry["rays"]),
+        f"{text.count(entry['rays'])} rays" if entry["target"] is None else str(Target(**entry["target"])),
         ", ".join(shown) if len(angles) < MANY else f"{len(angles)}: {shown[0]} to {shown[-1]}",
         "{parametrization}, {rows} x {columns}".format(**entry["slice"]),
         str(entry["created_utc"])[:16].replace("T", " "),

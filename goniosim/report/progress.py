@@ -19,8 +19,8 @@ def make_progress(total_rays, quiet=False):
 
     Parameters
     ----------
-    total_rays : int
-        Rays of all materials together.
+    total_rays : int or None
+        Rays of all materials together, None where targets decide.
     quiet : bool
         Show nothing.
 
@@ -82,12 +82,13 @@ class Bar(_Shown):
 
     Parameters
     ----------
-    total_rays : int
+    total_rays : int or None
     stream : text stream, optional
         Standard error by default.
     """
 
     FORMAT = "{desc}{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} rays [{elapsed}<{remaining}, {rate_fmt}]"
+    WITHOUT_TOTAL = "{desc}{n_fmt} rays [{elapsed}, {rate_fmt}]"
 
     def __init__(self, total_rays, stream=None):
         super().__init__(total_rays, stream or sys.stderr)
@@ -110,7 +111,7 @@ class Bar(_Shown):
                 unit=" rays",
                 unit_scale=True,
                 dynamic_ncols=True,
-                bar_format=self.FORMAT,
+                bar_format=self.WITHOUT_TOTAL if self.total_rays is None else self.FORMAT,
                 file=self.stream,
             )
         else:
@@ -141,7 +142,7 @@ class LogLines(_Shown):
 
     Parameters
     ----------
-    total_rays : int
+    total_rays : int or None
     stream : text stream, optional
         Standard error by default.
     clock : callable
@@ -170,12 +171,17 @@ class LogLines(_Shown):
         self._pace = min(2.0 * self._pace, SLOWEST_PACE)
         self._next_line = now + self._pace
         per_second = self.rays / (now - self._started)
-        percent = 100.0 * self.rays / self.total_rays
-        line = f"{self.description}: {percent:.3g} % of {text.count(self.total_rays)} rays"
+        line = f"{self.description}: {self._share()} rays"
         if per_second > 0.0:
-            left = (self.total_rays - self.rays) / per_second
-            line += f", {text.rate(per_second)}, about {text.duration(left)} left"
+            line += f", {text.rate(per_second)}"
+            if self.total_rays is not None:
+                line += f", about {text.duration((self.total_rays - self.rays) / per_second)} left"
         self.note(line)
+
+    def _share(self):
+        if self.total_rays is None:
+            return text.count(self.rays)
+        return f"{100.0 * self.rays / self.total_rays:.3g} % of {text.count(self.total_rays)}"
 
     def note(self, message):
         """Show a line of text."""

@@ -6,11 +6,12 @@ from goniosim.scene.differences import differences
 from goniosim.scene.effects import Effect, absent_interfaces, distinct_channels, effects
 from goniosim.scene.example import example
 from goniosim.scene.load import Config, Source, as_scene, as_scenes, load_config, load_scene, load_scenes, parse_scene
-from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
+from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice, total_rays
 from goniosim.scene.optical import OpticalStack, optical_stack
 from goniosim.scene.overrides import Override
 from goniosim.scene.quantity import CHANNELS
 from goniosim.scene.schema import json_schema
+from goniosim.scene.target import Target
 
 __all__ = [
     "CHANNELS",
@@ -24,6 +25,7 @@ __all__ = [
     "Simulation",
     "Slice",
     "Source",
+    "Target",
     "absent_interfaces",
     "as_scene",
     "as_scenes",
@@ -38,5 +40,6 @@ __all__ = [
     "load_scenes",
     "optical_stack",
     "parse_scene",
+    "total_rays",
     "with_arguments",
 ]

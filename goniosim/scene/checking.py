@@ -11,6 +11,7 @@ from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.problems import Problem, closest, listed
 from goniosim.scene.quantity import NO_NUMBER
 from goniosim.scene.structure import structure_mistakes
+from goniosim.scene.target import Target
 from goniosim.scene.tree import Node, Path, locate, plain
 
 MAPPINGS: dict[str, type[Part]] = {
@@ -18,6 +19,7 @@ MAPPINGS: dict[str, type[Part]] = {
     "incident": Incident,
     "slice": Slice,
     "simulation": Simulation,
+    "target": Target,
     "medium": Medium,
     **INTERFACES,
 }
@@ -25,6 +27,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "type": tuple(INTERFACES),
     "parametrization": get_args(Slice.model_fields["parametrization"].annotation),
     "estimator": get_args(Simulation.model_fields["estimator"].annotation),
+    "of": get_args(Target.model_fields["of"].annotation),
 }
 _LAYER = list(Layer.model_fields)
 

@@ -4,23 +4,29 @@ import hashlib
 import io
 import json
 import re
+from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 from ruamel.yaml import YAML
 
-from goniosim.scene.layers import Interface, Layer, Part
+from goniosim.scene.layers import ABSENT, Interface, Layer, Part
 from goniosim.scene.quantity import Checked, Number, check_each, count, mistake, mistakes
 from goniosim.scene.structure import structure_mistakes
+from goniosim.scene.target import Target, TimeSpan
 
 MAX_CELLS = 4_000_000
 MAX_DIRECTIONS = 1000
 # Of the simulation: how much to trace and with what. The same numbers come out, or more of them.
-NOT_IDENTITY = ("rays", "threads")
+NOT_IDENTITY = ("rays", "target", "max_rays", "max_time", "threads")
+# Of the simulation: what has a meaning beside a target only.
+LIMITS = ("max_rays", "max_time")
 
 Theta = Number(0.0, 90.0, "be 0 or more and below 90: it is the angle from the normal in degrees", open_high=True)
 CellCount = Number(1, MAX_CELLS, "be a whole number from 1 to 4e6", integer=True)
-Rays = Number(100, 10**15, "be a whole number from 100 to 1e15, such as 1e7", integer=True)
+DEFAULT_RAYS = 10_000_000
+MOST_RAYS = 10**15
+Rays = Number(100, MOST_RAYS, "be a whole number from 100 to 1e15, such as 1e7", integer=True)
 Seed = Number(0, 2**63 - 1, "be a whole number from 0 to 2^63 - 1", integer=True)
 Orders = Number(1, 16, "be a whole number from 1 to 16; leave it out for no decomposition", integer=True)
 Threads = Number(1, 4096, "be a whole number from 1 to 4096; leave it out to use every core", integer=True)
@@ -154,15 +160,68 @@ class Slice(Part):
 class Simulation(Part):
     """How much to trace, and how."""
 
-    rays: Annotated[int, Rays] = Field(default=10_000_000, description="Rays per incident direction.")
+    model_config = ConfigDict(
+        json_schema_extra={
+            "not": {"required": ["rays", "target"]},
+            "dependentRequired": {name: ["target"] for name in LIMITS},
+        }
+    )
+
+    rays: Annotated[int | None, Rays] = Field(
+        default=None,
+        description="Rays per incident direction, where there is no target.",
+        json_schema_extra={"default": DEFAULT_RAYS},
+    )
+    target: Target = Field(default=ABSENT, description="Stop at an accuracy; it takes the place of rays.")
+    max_rays: Annotated[int | None, Rays] = Field(
+        default=None, description="Rays per incident direction at most, where there is a target."
+    )
+    max_time: Annotated[float | None, TimeSpan()] = Field(
+        default=None, description="Time at most, where there is a target: seconds, or 90s, 10m, 2h or 1h30m."
+    )
     seed: Annotated[int, Seed] = Field(default=1, description="Seed of the random numbers.")
-    estimator: Literal["analog"] = Field(default="analog", description="Which Monte Carlo estimator to use.")
+    estimator: Literal["auto", "analog", "split", "operator", "connection"] = Field(
+        default="auto",
+        description="Which Monte Carlo estimator to use. auto: what promises most for the scene; analog: independent "
+        "paths, the reference.",
+    )
     orders: Annotated[int | None, Orders] = Field(
         default=None, description="Decompose by this many orders (events on the top interface)."
     )
     threads: Annotated[int | None, Threads] = Field(
         default=None, description="Threads to use; without it, one for each core."
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _measured(cls, content: object) -> object:
+        if isinstance(content, dict) and not {"rays", "target"} & content.keys():
+            return {**content, "rays": DEFAULT_RAYS}
+        return content
+
+    @model_validator(mode="after")
+    def _one_measure(self) -> Self:
+        found: list[tuple[tuple[int | str, ...], str, object]] = []
+        if self.target is None:
+            message = "limits a target, and there is none: add target: {relative_error: 1%}, or remove it"
+            limits = {name: getattr(self, name) for name in LIMITS}
+            found += [((name,), message, value) for name, value in limits.items() if value is not None]
+        elif self.rays is not None:
+            message = "must not stand beside target, which decides how many are traced: remove one of them"
+            found.append((("rays",), message, self.rays))
+        if found:
+            raise mistakes(found)
+        return self
+
+    @property
+    def asked(self) -> str:
+        """What ends the simulation, in words: ``1e7 rays``, or ``target 1 % of slice``."""
+        return f"{count(self.rays)} rays" if self.rays is not None else f"target {self.target}"
+
+    @property
+    def most_rays(self) -> int:
+        """Rays per incident direction that are traced at most, whatever a target takes."""
+        return self.rays or self.max_rays or MOST_RAYS
 
 
 class Scene(Part):
@@ -180,7 +239,7 @@ class Scene(Part):
             ", ".join(layers) if len(layers) <= MOST_SHOWN else f"{len(layers)} layers",
             f"theta_deg {', '.join(angles)}" if len(angles) <= MOST_SHOWN else f"{len(angles)} directions",
             f"{self.slice.parametrization} slices of {self.slice.rows} x {self.slice.columns} cells",
-            f"{count(self.simulation.rays)} rays",
+            self.simulation.asked,
             f"seed {self.simulation.seed}",
         ]
         return f"<Scene {self.material.name}: {'; '.join(parts)}>"
@@ -188,9 +247,9 @@ class Scene(Part):
     __str__ = __repr__
 
     @property
-    def total_rays(self) -> int:
-        """Rays of all incident directions together."""
-        return len(self.incident.theta_deg) * self.simulation.rays
+    def total_rays(self) -> int | None:
+        """Rays of all incident directions together; None where a target decides how many that will be."""
+        return None if self.simulation.rays is None else len(self.incident.theta_deg) * self.simulation.rays
 
     def to_yaml(self) -> str:
         """Write the scene as YAML, complete with its defaults.
@@ -211,9 +270,10 @@ class Scene(Part):
     def config_hash(self) -> str:
         """Identity of the scene: results of the same identity differ in nothing but their noise.
 
-        The seed belongs to it. The name of the material, the number of rays and
-        that of threads do not, and neither does the way of writing: a scalar
-        for three equal channels, or media in a row for their sum.
+        The seed and the estimator belong to it. The name of the material, the
+        number of rays or the target with its limits, and the number of threads
+        do not, and neither does the way of writing: a scalar for three equal
+        channels, or media in a row for their sum.
 
         Returns
         -------
@@ -229,6 +289,12 @@ class Scene(Part):
         }
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+def total_rays(scenes: Iterable[Scene]) -> int | None:
+    """Rays of several scenes together; None if a target decides in any of them."""
+    each = [scene.total_rays for scene in scenes]
+    return None if None in each else sum(filter(None, each))
 
 
 def _expanded(interface: Interface) -> dict[str, Any]:

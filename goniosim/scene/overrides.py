@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from goniosim.errors import ConfigError
+from goniosim.scene.model import LIMITS
 from goniosim.scene.problems import closest
 from goniosim.scene.reading import read_value
 from goniosim.scene.tree import Node, Origin, Path, parse_path, show, show_path
@@ -36,7 +37,8 @@ def override(root: Node, assignments: Iterable[str | Override]) -> Node:
     root : Node
     assignments : iterable of str or Override
         Each ``path=value``; the value is YAML. Later ones win. A mapping that
-        is absent on the way is made, and a list keeps its length.
+        is absent on the way is made, and a list keeps its length. A target takes
+        the place of the rays of the file, and rays that of its target and limits.
 
     Returns
     -------
@@ -51,6 +53,7 @@ def override(root: Node, assignments: Iterable[str | Override]) -> Node:
         form = "path=value, such as simulation.rays=1e6"
         raise ConfigError(f"overrides must be a list of {form} [got {show(assignments)}]")
     problems: list[str] = []
+    asked: set[int | str] = set()
     for each in assignments:
         change = each if isinstance(each, Override) else Override(str(each), f"override {each}")
         source = change.shown if len(change.shown) <= SHOWN else change.shown[: SHOWN - 3] + "..."
@@ -65,9 +68,25 @@ def override(root: Node, assignments: Iterable[str | Override]) -> Node:
             root = _set(root, (), path, value)
         except ConfigError as error:
             problems += error.problems
+        if path == ("simulation",):
+            asked.clear()
+        elif path[0] == "simulation":
+            asked.add(path[1])
     if problems:
         raise ConfigError(problems)
-    return root
+    return _without_replaced(root, asked)
+
+
+def _without_replaced(root: Node, asked: set[int | str]) -> Node:
+    """Drop from the simulation what gives way to the keys that were asked for."""
+    replaced = {"rays"} if "target" in asked else set()
+    if "rays" in asked:
+        replaced |= {"target", *LIMITS}
+    simulation = root.child("simulation")
+    if simulation is None or not isinstance(simulation.value, dict):
+        return root
+    kept = {key: child for key, child in simulation.value.items() if key not in replaced or key in asked}
+    return root.with_child("simulation", replace(simulation, value=kept))
 
 
 def _set(node: Node, done: Path, rest: Path, value: Node) -> Node:

@@ -63,6 +63,14 @@ class Checked(ABC):
     def json_schema(self) -> dict[str, Any]:
         """JSON Schema of such a value."""
 
+    def flaw(self, text: str) -> str | None:
+        """What is wrong with a value as a scene file would write it, or None."""
+        try:
+            self.check(float(text) if looks_numeric(text) else text)
+        except PydanticCustomError as error:
+            return error.message()
+        return None
+
     def __get_pydantic_core_schema__(self, source: object, handler: object) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(self.check)
 

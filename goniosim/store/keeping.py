@@ -1,9 +1,14 @@
-"""What may replace a result unasked: one of the same scene that has no fewer rays, or anything if it is damaged."""
+"""What may replace a result unasked: one of the same scene that is worth no less, or anything if it is damaged.
 
+Rays are a measure of worth, since the estimator is part of the scene. Those of a target are not the same in all
+directions: they went where they were needed, and count together.
+"""
+
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from goniosim.errors import (
     ConfigError,
@@ -16,8 +21,8 @@ from goniosim.errors import (
     UnusableResultError,
 )
 from goniosim.result import Result
-from goniosim.scene import Scene, differences, parse_scene
-from goniosim.scene.model import MAX_DIRECTIONS
+from goniosim.scene import Scene, Simulation, differences, parse_scene
+from goniosim.scene.model import LIMITS, MAX_DIRECTIONS
 from goniosim.scene.quantity import count
 from goniosim.store import access
 from goniosim.store.kinds import RESULT
@@ -41,31 +46,54 @@ class Standing:
         ``complete`` or ``partial``, where ``rays`` are known.
     damage : str
         What is wrong with the file, if it is damaged.
+    simulation : goniosim.scene.Simulation or None
+        What the result was asked for, where ``rays`` are known.
+    target_reached : bool or None
+        Whether its target was reached; None if it had none.
     """
 
     rays: np.ndarray | None = None
     differences: tuple[str, ...] = ()
     status: str = ""
     damage: str = ""
+    simulation: Simulation | None = None
+    target_reached: bool | None = None
 
-    def holds(self, rays: ArrayLike) -> bool:
-        """Whether it is of the scene asked for, with at least so many rays from every direction."""
-        return self.rays is not None and bool((self.rays >= np.asarray(rays)).all())
+    def holds(self, asked: Simulation) -> bool:
+        """Whether it is of the scene asked for, and gives what is asked for: the rays, or the accuracy.
+
+        A target that was not reached counts for whoever sets the same limits, or narrower ones: to run it again
+        would lead no further.
+        """
+        if self.rays is None or self.simulation is None:
+            return False
+        complete, target = self.status == "complete", self.simulation.target
+        if asked.target is None:
+            spread = complete and target is not None and self.rays.mean() >= asked.most_rays
+            return spread or bool((self.rays >= asked.most_rays).all())
+        if not complete or target is None or not asked.target.is_met_by(target):
+            return False
+        return bool(self.target_reached) or _are_narrower(asked, self.simulation)
+
+    def outweighs(self, rays: np.ndarray) -> bool:
+        """Whether it is of the scene asked for, with more rays, all directions together."""
+        return self.rays is not None and bool(self.rays.sum() > rays.sum())
 
 
-def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: str = "") -> Standing | None:
+def look_at(
+    path: StrPath, scene: Scene | None, rays: np.ndarray | None = None, config_yaml: str = ""
+) -> Standing | None:
     """See what stands at the place of an output.
 
-    Cheap, unless the file holds as much as is asked for: then every byte of it is checked, so that nobody relies on
-    a damaged one.
+    Cheap, unless it is to stay: then every byte of the file is checked, so that nobody relies on a damaged one.
 
     Parameters
     ----------
     path : path-like
     scene : Scene or None
         What is asked for; None if ``config_yaml`` cannot be read.
-    rays : int or ndarray of int64, shape (M,)
-        Rays per direction that are asked for.
+    rays : ndarray of int64, shape (M,), optional
+        Of a result that is to go there. Without it, the result is still to be made.
     config_yaml : str
         A text that stands for the scene too.
 
@@ -85,8 +113,8 @@ def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: st
         found = () if there == config_yaml else _differences(there, scene)
         if found:
             return Standing(differences=found)
-        traced = _rays(path)
-        if (traced >= np.asarray(rays)).any():
+        standing = _standing(path, header)
+        if standing.outweighs(rays) if rays is not None else scene is not None and standing.holds(scene.simulation):
             _verify(path)
     except DamagedFileError as error:
         return Standing(damage=str(error))
@@ -96,7 +124,7 @@ def look_at(path: StrPath, scene: Scene | None, rays: ArrayLike, config_yaml: st
         # Nothing, or something that is none of ours: this tells.
         reserve_output(path, 0).release()
         return None
-    return Standing(traced, status=str(header["status"]))
+    return standing
 
 
 def refuse_newer(path: StrPath) -> None:
@@ -121,7 +149,7 @@ def check_replacement(path: StrPath, result: Result) -> None:
     Raises
     ------
     FewerRaysError
-        A sound result of the same scene with more rays from some direction.
+        A sound result of the same scene with more rays.
     OutputError
         A result of another scene, or no result.
     """
@@ -133,8 +161,8 @@ def check_replacement(path: StrPath, result: Result) -> None:
             f"{path}: holds the result of another scene ({'; '.join(found.differences)}), so it is not overwritten; "
             "choose another name, or allow overwriting"
         )
-    if (found.rays > result.rays).any():
-        raise FewerRaysError(path, count(found.rays.max()), count(result.rays.max()))
+    if found.outweighs(result.rays):
+        raise FewerRaysError(path, count(found.rays.mean()), count(result.rays.mean()))
 
 
 def _differences(there: str, asked: Scene | None) -> tuple[str, ...]:
@@ -149,6 +177,23 @@ def _scene(config_yaml: str) -> Scene | None:
         return parse_scene(config_yaml)
     except ConfigError:
         return None
+
+
+def _standing(path: StrPath, header: Mapping[str, str | int]) -> Standing:
+    scene = _scene(str(header["config_yaml"]))
+    reached = header.get("target_reached")
+    return Standing(
+        rays=_rays(path),
+        status=str(header["status"]),
+        simulation=scene.simulation if scene else None,
+        target_reached=None if reached is None else bool(reached),
+    )
+
+
+def _are_narrower(limits: Simulation, others: Simulation) -> bool:
+    """Whether each limit of a target is that of another one, or narrower."""
+    pairs = [(getattr(limits, name) or math.inf, getattr(others, name) or math.inf) for name in LIMITS]
+    return all(one <= other for one, other in pairs)
 
 
 def _verify(path: StrPath) -> None:

@@ -216,10 +216,11 @@ ATTRIBUTES = (
         "config_hash",
         "text",
         "identity of the scene: all that determines the numbers but for their noise, the seed included; "
-        "not rays, threads and name. SHA-256, hexadecimal",
+        "not rays, target, threads and name. SHA-256, hexadecimal",
     ),
     Attribute("/", "seed", "uint64", "seed of the random numbers"),
     Attribute("/", "status", "text", "`complete`, or `partial` after an interruption"),
+    Attribute("/", "target_reached", "uint64", "1 if the target of the simulation was reached, 0 if not; or absent"),
     Attribute("/", "name", "text", "name of the material"),
     Attribute("/", "estimator", "text", "that of all sampled components and directions if they agree, else `mixed`"),
     Attribute("/", "PROVENANCE", "text", "any further text: versions, git revision, command line, machine, threads"),
@@ -229,7 +230,17 @@ ATTRIBUTES = (
 )
 
 # Every other text attribute of the root comes from, and goes back to, `Result.provenance`.
-NOT_PROVENANCE = ("filetype", "schema_version", "config_yaml", "config_hash", "seed", "status", "name", "estimator")
+NOT_PROVENANCE = (
+    "filetype",
+    "schema_version",
+    "config_yaml",
+    "config_hash",
+    "seed",
+    "status",
+    "target_reached",
+    "name",
+    "estimator",
+)
 
 _PLACEHOLDERS = {
     "COMPONENT": rf"(?:{'|'.join(COMPONENTS)})(?:/order_\d+(?:_and_more)?)?",

@@ -143,6 +143,7 @@ def _result(file: h5py.File, ours: Ours, header: dict[str, Any]) -> Result:
         provenance={
             name: value for name, value in header.items() if name not in NOT_PROVENANCE and isinstance(value, str)
         },
+        target_reached=bool(header["target_reached"]) if "target_reached" in header else None,
     )
     validation.check(validation.GEOMETRY, result, scene)
     earlier.complete(result)

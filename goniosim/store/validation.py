@@ -81,6 +81,7 @@ def _are_texts(header: Header, *names: str) -> bool:
 HEADER = (
     Rule("name", FileName.rule.removeprefix("must "), lambda header: is_file_name(header.get("name"))),
     Rule("status", "be complete or partial", lambda header: header.get("status") in ("complete", "partial")),
+    Rule("target_reached", "be 0 or 1, or absent", lambda header: header.get("target_reached", 0) in (0, 1)),
     Rule("seed", "be a whole number", lambda header: isinstance(header.get("seed"), int)),
     Rule("config_hash", "be 64 hexadecimal digits", lambda header: is_hash(header.get("config_hash"))),
     Rule("schema_version", "be MAJOR.MINOR", lambda header: is_version(header.get("schema_version"))),
@@ -95,6 +96,11 @@ HEADER = (
 HEADER_AND_SCENE = (
     Rule("name", "be that in config_yaml", lambda header, scene: header["name"] == scene.material.name),
     Rule("seed", "be that in config_yaml", lambda header, scene: header["seed"] == scene.simulation.seed),
+    Rule(
+        "target_reached",
+        "be there only if config_yaml has a target",
+        lambda header, scene: "target_reached" not in header or scene.simulation.target is not None,
+    ),
 )
 
 # For whatever has directions, channels and cells: a result, or a material of a file of models.
@@ -135,10 +141,14 @@ GEOMETRY = (
 RESULT = (
     Rule(
         "incident/rays",
-        "be those in config_yaml, or fewer if status is partial",
+        "be those in config_yaml, or fewer if status is partial or a target decides",
         lambda result, scene: (
-            (result.rays <= scene.simulation.rays).all()
-            and (result.status == "partial" or (result.rays == scene.simulation.rays).all())
+            (result.rays <= scene.simulation.most_rays).all()
+            and (
+                result.status == "partial"
+                or scene.simulation.target is not None
+                or (result.rays == scene.simulation.rays).all()
+            )
         ),
     ),
     Rule(

@@ -102,8 +102,9 @@ def root_attributes(result: Result) -> dict[str, str | int]:
         "estimator": result.estimator,
         **result.provenance,
     }
+    reached = {} if result.target_reached is None else {"target_reached": int(result.target_reached)}
     # What is hashed must be what a reader gets back.
-    return {"seed": int(result.seed), **{name: utf8(text).decode() for name, text in texts.items()}}
+    return {"seed": int(result.seed), **reached, **{name: utf8(text).decode() for name, text in texts.items()}}
 
 
 def components_of(components: Mapping[str, Component], parent: str = "") -> Iterator[tuple[str, Component]]:

@@ -28,7 +28,7 @@ def result_file(folder):
         (errors.DamagedFileError, 6),
         (errors.NewerSchemaError, 7),
         (errors.UnusableResultError, 8),
-        (errors.RefusalError, 9),
+        (errors.RefusalError, 10),
     ],
 )
 def test_known_errors_are_one_line_with_their_own_code(goniosim, monkeypatch, error, code):

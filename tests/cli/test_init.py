@@ -11,7 +11,7 @@ import pytest
 from goniosim_cli.init import NAMES
 
 import goniosim as package
-from goniosim.scene import example, json_schema
+from goniosim.scene import example, json_schema, parse_scene
 from goniosim.scene.reading import read_text
 from goniosim.scene.tree import plain
 
@@ -35,6 +35,20 @@ def test_an_example_teaches_and_satisfies_the_schema(name):
     for lesson in ("absolute", "GGX width", "roughness", "degrees from the normal", "per incident direction"):
         assert lesson in flat
     assert ("ptical depth" in flat) == ("tau" in flat)
+
+
+def test_what_the_first_example_has_in_comments_is_right():
+    text = example("quickstart").replace("  rays: 4e6 ", "  # ")
+    for commented in ("#   target:", "#   max_time:", "# estimator:"):
+        assert f"  {commented}" in text
+        text = text.replace(commented, commented.lstrip("# "))
+    schema, content = json_schema(), plain(read_text(text, "quickstart"))
+    jsonschema.validate(content, schema, jsonschema.Draft202012Validator)
+    simulation = parse_scene(text).simulation
+    assert (str(simulation.target), simulation.max_time, simulation.estimator) == ("1 % of slice", 600.0, "analog")
+    for wrong in ({"target": {"relative_error": "1%"}, "rays": 1000}, {"rays": 1000, "max_time": 60}):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate({**content, "simulation": wrong}, schema, jsonschema.Draft202012Validator)
 
 
 def test_the_default_is_the_configuration_of_the_repository(goniosim, folder):

@@ -65,10 +65,10 @@ def test_folders_of_figures_and_reports_are_outputs(goniosim, folder):
 @pytest.mark.parametrize(
     ("error", "code", "words"),
     [
-        (OSError(errno.EMFILE, os.strerror(errno.EMFILE), "a.h5"), 9, ("a.h5: Too many open files", "ulimit -n")),
-        (BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)), 9, ("temporarily unavailable", "ulimit -u")),
-        (BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE)), 9, ("Broken pipe",)),
-        (FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)), 9, ("current folder is gone", "cd")),
+        (OSError(errno.EMFILE, os.strerror(errno.EMFILE), "a.h5"), 10, ("a.h5: Too many open files", "ulimit -n")),
+        (BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)), 10, ("temporarily unavailable", "ulimit -u")),
+        (BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE)), 10, ("Broken pipe",)),
+        (FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)), 10, ("current folder is gone", "cd")),
         (MemoryError(), 4, ("memory ran out", "fewer or smaller files")),
     ],
 )
@@ -115,7 +115,7 @@ def test_a_simulation_makes_do_with_the_threads_it_gets(goniosim, folder, few_th
 
 def test_without_a_thread_a_simulation_is_refused(goniosim, folder, few_threads):
     few_threads.most = 0
-    _refused(goniosim("simulate", "scene.yaml", "-q"), 9, "the system starts no thread")
+    _refused(goniosim("simulate", "scene.yaml", "-q"), 10, "the system starts no thread")
 
 
 def test_why_compiled_code_is_not_kept_is_said_to_those_who_ask(goniosim, folder, monkeypatch):

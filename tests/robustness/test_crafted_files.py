@@ -130,6 +130,11 @@ CASES = {
     "name-variable": (number("/", "name", "synthetic"), "name must be usable as a file name"),
     "attribute-escape": (text("/", "a\x1b[2Jb", "x"), "must have a plain name"),
     "status": (text("/", "status", "banana"), "status must be complete or partial"),
+    "target-reached": (number("/", "target_reached", np.uint64(2)), "target_reached must be 0 or 1, or absent"),
+    "target-none": (
+        number("/", "target_reached", np.uint64(1)),
+        "target_reached must be there only if",
+    ),
     "seed-text": (text("/", "seed", "1"), "seed must be a whole number"),
     "seed-other": (number("/", "seed", np.uint64(5)), "seed must be that in config_yaml"),
     "seed-huge": (number("/", "seed", np.uint64(2**64 - 1)), "seed must be that in config_yaml"),

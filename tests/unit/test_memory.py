@@ -10,6 +10,7 @@ from goniosim.engine import memory, memory_needed, require_memory, shortage, sim
 from goniosim.errors import ResourceError
 from goniosim.free_memory import free_memory, resident_memory
 from goniosim.report.simulation.forecast import file_size
+from goniosim.scene import with_arguments
 from reference.scenes import dielectric, lambert, make_scene, medium
 
 # The module, which the function of the same name hides.
@@ -189,6 +190,14 @@ def test_memory_that_runs_out_all_the_same_is_explained(monkeypatch):
 def test_the_need_does_not_grow_with_the_rays_of_a_long_run():
     needs = [memory_needed(make_scene(PLASTIC, [30.0], rays=rays)).peak for rays in (10**10, 10**15)]
     assert needs[0] == needs[1]
+
+
+def test_a_target_needs_what_its_limit_or_a_long_run_needs():
+    def needed(**given):
+        return memory_needed(with_arguments(make_scene(SLAB, [30.0], threads=2), given))
+
+    assert needed(target=0.01) == needed(rays=10**15)
+    assert needed(target=0.01, max_rays=10**6) == needed(rays=10**6) != needed(rays=10**15)
 
 
 def test_ledgers_that_are_added_up_keep_the_balance(monkeypatch):

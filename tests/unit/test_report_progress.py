@@ -48,6 +48,24 @@ def test_log_lines_tell_share_rate_and_time_left():
     assert stream.getvalue().endswith("metal: 25 % of 4e6 rays, 200 k rays/s, about 15 s left\n")
 
 
+def test_log_lines_tell_rays_and_rate_where_a_target_decides():
+    log, clock, stream = _log(None)
+    log.begin("metal")
+    clock.now += 5.0
+    log.update(1_000_000, None)
+    assert stream.getvalue().endswith("metal: 1e6 rays, 200 k rays/s\n")
+
+
+def test_the_bar_tells_rays_and_rate_where_a_target_decides():
+    stream = io.StringIO()
+    bar = progress.Bar(None, stream)
+    bar.begin("metal")
+    bar.update(2_000_000, None)
+    bar.close()
+    last = stream.getvalue().rstrip().split("\r")[-1]
+    assert last.startswith("metal: 2.00M rays [") and "rays/s]" in last and "%" not in last and "?" not in last
+
+
 def test_log_lines_count_the_rays_of_earlier_materials():
     log, clock, stream = _log(200)
     log.begin("1/2 a")

@@ -8,6 +8,7 @@ import pytest
 
 from goniosim.engine import memory_needed
 from goniosim.report.simulation import audit, cost, forecast, losses, study, summary
+from goniosim.scene import Simulation
 from reference.scenes import lambert, make_scene
 from synthetic import make_result
 
@@ -49,7 +50,7 @@ def test_the_forecast_warns_of_the_event_cap():
     one = forecast.Forecast(
         name="trap",
         directions=1,
-        rays=1000,
+        simulation=Simulation(rays=1000),
         rays_per_second=1e6,
         events_per_ray=2.0,
         compile_seconds=0.0,

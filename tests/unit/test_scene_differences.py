@@ -20,7 +20,8 @@ SAME = [
     ("    - medium: {tau: 0.2}\n", "    - medium: {tau: 0.125}\n    - medium: {tau: 0.075}\n"),
     ("{type: dielectric, eta: 1.5, alpha: 0.2}", "{alpha: 0.2, eta: 1.5, type: dielectric}"),
     ("[0, 30]", "[-0.0, 3.0e+1]"),
-    ("[0, 30]}\n", "[0, 30]}\nsimulation: {estimator: analog, threads: 3, rays: 100, seed: 1}\nslice: {rows: 90}\n"),
+    ("[0, 30]}\n", "[0, 30]}\nsimulation: {estimator: auto, threads: 3, rays: 100, seed: 1}\nslice: {rows: 90}\n"),
+    ("[0, 30]}\n", "[0, 30]}\nsimulation: {target: {relative_error: 1%, of: cells}, max_rays: 1e6, max_time: 1h}\n"),
     ("name: small", "name: large"),
 ]
 
@@ -51,6 +52,11 @@ DIFFERENT = [
     ("[0, 30]", "[30, 0]", "incident.theta_deg: [0, 30] in the file, [30, 0] asked for"),
     ("30]}\n", "30]}\nslice: {parametrization: half}\n", "slice.parametrization: classic in the file, half asked for"),
     ("30]}\n", "30]}\nsimulation: {seed: 2}\n", "simulation.seed: 1 in the file, 2 asked for"),
+    (
+        "30]}\n",
+        "30]}\nsimulation: {estimator: analog}\n",
+        "simulation.estimator: auto in the file, analog asked for",
+    ),
     ("30]}\n", "30]}\nsimulation: {orders: 3}\n", "simulation.orders: nothing in the file, 3 asked for"),
 ]
 

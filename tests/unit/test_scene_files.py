@@ -120,7 +120,8 @@ def test_an_override_mends_a_mistake_of_the_file():
         ("material.parts[0]=a", "leads nowhere: there is no material.parts"),
         (
             "simulation.ryas=5",
-            "simulation.ryas: unknown key; the keys here are rays, seed, estimator, orders and threads "
+            "simulation.ryas: unknown key; the keys here are rays, target, max_rays, max_time, seed, estimator, "
+            "orders and threads "
             "(did you mean rays?)",
         ),
         (

@@ -10,6 +10,7 @@ from goniosim.scene.foreign import translate
 from goniosim.scene.foreign.words import KEYS, TYPES, normal
 from goniosim.scene.layers import INTERFACES, Layer, Medium
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
+from goniosim.scene.target import Target
 from goniosim.scene.tree import Origin, from_plain
 
 PLACES = {
@@ -20,6 +21,7 @@ PLACES = {
     "incident": Incident,
     "slice": Slice,
     "simulation": Simulation,
+    "target": Target,
     **INTERFACES,
 }
 
@@ -384,7 +386,7 @@ def test_nothing_under_a_foreign_word_trips_it():
     noted = 0
     for word in [meaning.words.split()[0] for meanings in KEYS.values() for meaning in meanings]:
         for value in junk:
-            part = {word: value, "type": "metal", "thickness": value}
+            part = {word: value, "type": "metal", "thickness": value, "target": {word: value}}
             layers = [{"interface": part}, {"medium": part}, part]
             scene = {**part, "material": {**part, "layers": layers}}
             scene |= dict.fromkeys(("incident", "slice", "simulation"), part)

@@ -175,7 +175,8 @@ COAT = "f.yaml:4: material.layers[0].interface"
         (
             "seed: 1",
             "estimator: analogue",
-            "f.yaml:14: simulation.estimator: must be analog [got 'analogue'] (did you mean analog?)",
+            "f.yaml:14: simulation.estimator: must be auto, analog, split, operator or connection [got 'analogue'] "
+            "(did you mean analog?)",
         ),
         # keys
         (
@@ -229,7 +230,8 @@ COAT = "f.yaml:4: material.layers[0].interface"
         (
             "simulation: {rays: 1e7, seed: 1}",
             "simulation: 1e7",
-            "f.yaml:14: simulation: must be a mapping with rays, seed, estimator, orders and threads [got 10000000.0]",
+            "f.yaml:14: simulation: must be a mapping with rays, target, max_rays, max_time, seed, estimator, "
+            "orders and threads [got 10000000.0]",
         ),
         (
             "{type: dielectric, eta: 1.5, alpha: 0.2}",

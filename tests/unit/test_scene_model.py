@@ -15,8 +15,11 @@ def test_defaults_are_those_of_the_format():
     assert scene.slice.model_dump() == {"parametrization": "classic", "rows": 90, "columns": 360}
     assert scene.simulation.model_dump() == {
         "rays": 10_000_000,
+        "target": None,
+        "max_rays": None,
+        "max_time": None,
         "seed": 1,
-        "estimator": "analog",
+        "estimator": "auto",
         "orders": None,
         "threads": None,
     }

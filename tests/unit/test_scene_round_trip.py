@@ -26,6 +26,11 @@ def random_scene(rng):
     lambert = {"type": "lambert", "rho": channels(0, 1)}
     layers.append(rng.choice([dielectric(1, alpha()), {"interface": conductor}, {"interface": lambert}]))
     simulation = {"rays": rng.choice([100, 1e7, 10**15]), "seed": rng.randrange(2**63)}
+    if rng.random() < 0.3:
+        del simulation["rays"]
+        error, time = rng.choice([0.7e-2, "0.7%", rng.random() or 0.5]), rng.choice([0.1, "1h30m", 1e9])
+        simulation |= {"target": {"relative_error": error, "of": rng.choice(["slice", "albedo", "cells"])}}
+        simulation |= rng.choice([{}, {"max_rays": 1e9, "max_time": time}, {"max_time": time}])
     if rng.random() < 0.5:
         simulation |= {"orders": rng.randint(1, 16), "threads": rng.randint(1, 64)}
     return parse_scene(
@@ -57,13 +62,14 @@ def test_yaml_is_complete_and_readable():
         "  name: patina",
         "  - interface: {type: dielectric, eta: 1.5, alpha: 0.2}",
         "slice: {parametrization: classic, rows: 90, columns: 360}",
-        "simulation: {rays: 10000000, seed: 1, estimator: analog}",
+        "simulation: {rays: 10000000, seed: 1, estimator: auto}",
     ):
         assert line in text.splitlines()
 
 
 def test_hash_ignores_what_does_not_determine_the_numbers():
-    for same in ({"threads": 3}, {"rays": 1e6}):
+    aimed = {"target": {"relative_error": 0.01, "of": "albedo"}, "max_rays": 1e6, "max_time": "10m"}
+    for same in ({"threads": 3}, {"rays": 1e6}, aimed):
         assert patina(simulation=same).config_hash() == patina().config_hash()
     one = layered(dielectric(), medium(0.75), WHITE)
     for same in (
@@ -81,6 +87,8 @@ def test_hash_tells_apart_what_determines_the_numbers():
         patina(),
         patina(simulation={"seed": 2}),
         patina(simulation={"orders": 2}),
+        patina(simulation={"estimator": "analog"}),
+        patina(simulation={"estimator": "split"}),
         patina(slice={"parametrization": "half"}),
         patina(slice={"rows": 91}),
         patina(slice={"columns": 361}),
@@ -100,4 +108,5 @@ def test_hash_tells_apart_what_determines_the_numbers():
 
 def test_hash_stays_what_it_was():
     # Result files carry this fingerprint; if it changes, old files no longer match their scene.
-    assert patina().config_hash() == "6e439dd716df053cbcd491f09a54faa5c484b54a29068be482e77ff693cb632a"
+    analog = patina(simulation={"estimator": "analog"})
+    assert analog.config_hash() == "6e439dd716df053cbcd491f09a54faa5c484b54a29068be482e77ff693cb632a"

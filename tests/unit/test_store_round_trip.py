@@ -39,8 +39,10 @@ def assert_same(one, other, where="result"):
         {"components": ("reflection/direct",), "status": "partial", "seed": 2**63 - 1},
         {"theta_deg": [30.0], "rows": 1, "columns": 1},
         {"orders": 2, "rows": 20, "columns": 37, "estimator": {"transmission": "split"}},
+        {"target": "{relative_error: 1%, of: cells}", "target_reached": True},
+        {"target": "{relative_error: 1%}, max_rays: 1e5", "target_reached": False},
     ],
-    ids=["full", "orders", "channels", "partial", "one-cell", "batches"],
+    ids=["full", "orders", "channels", "partial", "one-cell", "batches", "reached", "missed"],
 )
 def test_everything_comes_back(tmp_path, options):
     """Eleven orders, because the names of order 10 and order 2 sort differently as text."""

@@ -20,13 +20,14 @@ from synthetic import make_result, write_models
 DOCUMENT = (Path(__file__).parents[2] / "data_schema.md").read_text(encoding="utf-8")
 MODELS = DOCUMENT[DOCUMENT.index("## The file of integrated models") : DOCUMENT.index("## Integrity")]
 RESULTS = DOCUMENT.replace(MODELS, "")
+EVERYTHING = {"orders": 3, "target": "{relative_error: 1%}", "target_reached": False}
 
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     """A file with everything in it that a file can have."""
     path = tmp_path_factory.mktemp("schema") / "result.h5"
-    write_result(make_result(orders=3, estimator={"reflection/internal": "split"}), path)
+    write_result(make_result(**EVERYTHING, estimator={"reflection/internal": "split"}), path)
     return path
 
 
@@ -200,7 +201,7 @@ def test_xarray_opens_a_component(path, group, engine):
 
 @pytest.mark.parametrize("engine", [None, "h5netcdf"])
 def test_xarray_opens_the_rest(path, engine):
-    result = make_result(orders=3)
+    result = make_result(**EVERYTHING)
     with xr.open_datatree(path, engine=engine) as tree:
         assert tree["cells/valid"].dtype == bool
         assert tree["cells/valid"].dims == ("direction", "row", "column")

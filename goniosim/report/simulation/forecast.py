@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass
 
 from .. import text
+from . import target
 from .losses import NOTEWORTHY_CAP, cap_remedy
 
 # Seconds spent on probing one material, and on probing a whole study.
@@ -18,8 +19,8 @@ class Forecast:
     ----------
     name : str
     directions : int
-    rays : int
-        Per direction.
+    simulation : goniosim.scene.Simulation
+        What is asked for.
     rays_per_second, events_per_ray : float
         As measured.
     compile_seconds : float
@@ -41,7 +42,7 @@ class Forecast:
 
     name: str
     directions: int
-    rays: int
+    simulation: object
     rays_per_second: float
     events_per_ray: float
     compile_seconds: float
@@ -56,8 +57,11 @@ class Forecast:
 
     @property
     def seconds(self):
-        """Predicted time of tracing, without compilation."""
-        return self.directions * self.rays / self.rays_per_second
+        """Predicted time of tracing, without compilation; with a target the most that its limits allow, or None."""
+        asked = self.simulation
+        rays = asked.rays or asked.max_rays
+        traced = None if rays is None else self.directions * rays / self.rays_per_second
+        return min(filter(None, (traced, asked.max_time)), default=None)
 
 
 def file_size(scene):
@@ -103,7 +107,7 @@ def forecasts(scenes):
             Forecast(
                 name=scene.material.name,
                 directions=len(scene.incident.theta_deg),
-                rays=scene.simulation.rays,
+                simulation=scene.simulation,
                 rays_per_second=measured.rays_per_second,
                 events_per_ray=measured.events_per_ray,
                 compile_seconds=measured.compile_seconds,
@@ -151,7 +155,7 @@ def cost_text(made):
         lines = [
             f"Predicted, from a probe of about {text.duration(PROBE)}",
             f"  speed       {text.rate(one.rays_per_second)}, {one.events_per_ray:.1f} events per ray",
-            f"  time        {text.duration(one.seconds)} for {one.directions} x {text.count(one.rays)} rays",
+            f"  time        {_time(one)}",
             f"  file size   at most {text.size(one.n_bytes)}",
             f"  memory      at most {text.size(one.memory.peak)} on {text.counted(one.threads, 'thread')}: "
             + ", ".join(f"{name} {text.size(n_bytes)}" for name, n_bytes in _largest(one.memory)),
@@ -159,24 +163,24 @@ def cost_text(made):
             f"{text.size(one.memory_to_compare)} for compare with all models",
         ]
     else:
-        header = ["material", "rays", "speed", "time", "file at most", "memory"]
+        header = ["material", "rays or target", "speed", "time", "file at most", "memory"]
         rows = [
             [
                 one.name,
-                text.count(one.directions * one.rays),
+                _asked(one),
                 text.rate(one.rays_per_second),
-                text.duration(one.seconds),
+                _duration(one.seconds),
                 text.size(one.n_bytes),
                 text.size(one.memory.peak),
             ]
             for one in made
         ]
-        seconds, n_bytes = sum(one.seconds for one in made), sum(one.n_bytes for one in made)
+        seconds, n_bytes = _total(one.seconds for one in made), sum(one.n_bytes for one in made)
         peak, compared = (max(one.memory.peak for one in made), max(one.memory_to_compare for one in made))
         lines = [
             f"{len(made)} materials, all valid; speeds from short probes",
             *text.table(header, rows),
-            f"  Together: {text.duration(seconds)}, at most {text.size(n_bytes)} on disk and, at a time, "
+            f"  Together: {_duration(seconds)}, at most {text.size(n_bytes)} on disk and, at a time, "
             f"{text.size(peak)} of memory;",
             f"  compare with all models takes at most {text.size(compared)} of memory.",
         ]
@@ -185,6 +189,28 @@ def cost_text(made):
     if compilation > 1.0:
         lines.append(f"  Compilation took {text.duration(compilation)}; it is kept for the next run.")
     return "\n".join(lines)
+
+
+def _time(one):
+    if one.simulation.target is None:
+        return f"{text.duration(one.seconds)} for {one.directions} x {text.count(one.simulation.rays)} rays"
+    until = f"until {one.simulation.target} is reached"
+    return until if one.seconds is None else f"{until}, at most {text.duration(one.seconds)}"
+
+
+def _asked(one):
+    simulation = one.simulation
+    return text.count(one.directions * simulation.rays) if simulation.target is None else str(simulation.target)
+
+
+def _duration(seconds):
+    return "as it takes" if seconds is None else text.duration(seconds)
+
+
+def _total(seconds):
+    """Sum of times, None if one of them is."""
+    seconds = list(seconds)
+    return None if None in seconds else sum(seconds)
 
 
 def _largest(memory):
@@ -198,7 +224,7 @@ def _event_cap(one):
     # Each work unit of the probe has less rays than one of a long run, which loses a smaller share.
     return (
         f"  Warning: event cap: {one.name} traps light between interfaces; of the {text.count(one.probe_rays)} rays of "
-        f"the probe up to {100.0 * one.lost_event_cap:.2g} % were cut and lost; {cap_remedy(one.rays)}"
+        f"the probe up to {100.0 * one.lost_event_cap:.2g} % were cut and lost; {cap_remedy(one.simulation.rays or 0)}"
     )
 
 
@@ -219,7 +245,7 @@ def as_dict(scene, one):
     return {
         "name": one.name,
         "directions": one.directions,
-        "rays": one.rays,
+        **one.simulation.model_dump(include={"rays", "target", "max_rays", "max_time", "estimator"}),
         "threads": one.threads,
         "seconds": one.seconds,
         "rays_per_second": one.rays_per_second,
@@ -240,7 +266,7 @@ def as_dict(scene, one):
 def study_as_dict(name, scenes, made):
     """What `check` says of a study, for programs: totals, and the peak of memory, which is not a sum."""
     materials = [as_dict(scene, one) for scene, one in zip(scenes, made, strict=True)]
-    totals = {key: sum(each[key] for each in materials) for key in ("seconds", "compile_seconds", "file_bytes")}
+    totals = {key: _total(each[key] for each in materials) for key in ("seconds", "compile_seconds", "file_bytes")}
     return {
         "name": name,
         **totals,
@@ -260,7 +286,7 @@ def _heading(scene):
             f"{scene.material.name}: valid",
             f"  incident theta [deg]: {angles}",
             f"  {chosen.parametrization} slices, {chosen.rows} x {chosen.columns} cells",
-            f"  rays per direction: {text.count(scene.simulation.rays)}, seed {scene.simulation.seed}",
+            f"  {target.asked(scene.simulation)}, seed {scene.simulation.seed}",
             "",
         ]
     )

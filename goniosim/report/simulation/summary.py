@@ -5,8 +5,9 @@ import os
 
 import numpy as np
 
+from ...scene import parse_scene
 from .. import text
-from . import audit, cost, losses
+from . import audit, cost, losses, target
 
 # A smaller share of the energy in uncertain cells is not worth a word.
 NEGLIGIBLE = 1e-3
@@ -69,6 +70,9 @@ def heading_lines(result):
         f"  {slices}, channels {', '.join(result.channels)}",
         f"  rays per direction: {text.counts(result.rays)}, seed {result.seed}, estimator {result.estimator}",
     ]
+    if result.target_reached is not None:
+        outcome = "reached" if result.target_reached else "not reached"
+        lines.append(f"  {target.asked(parse_scene(result.config_yaml).simulation)}: {outcome}")
     for name, component in result.components.items():
         if component.contains_delta:
             lines.append(f"  {name} contains a perfectly sharp (Dirac) part; its cell holds a cell average")
@@ -116,6 +120,7 @@ def as_data(result):
         "theta_deg": result.theta_deg.tolist(),
         "phi_deg": result.phi_deg.tolist(),
         "rays": result.rays.tolist(),
+        "target_reached": result.target_reached,
         "channels": list(result.channels),
         "slice": {"parametrization": result.cells.parametrization, "rows": rows, "columns": columns},
         "components": {

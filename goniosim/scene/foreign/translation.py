@@ -4,20 +4,32 @@ import re
 from dataclasses import replace
 
 from goniosim.scene.foreign import values
-from goniosim.scene.foreign.words import INDICES, PARAMETRIZATIONS, TYPES, Meaning, meaning, normal
+from goniosim.scene.foreign.words import ESTIMATORS, INDICES, OF, PARAMETRIZATIONS, TYPES, Meaning, meaning, normal
 from goniosim.scene.layers import INTERFACES, Layer, Medium, Part
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.problems import Problem, closest, listed
 from goniosim.scene.quantity import looks_numeric
+from goniosim.scene.target import Target
 from goniosim.scene.tree import Node, from_plain, plain, show
 
 # Stand-ins for what cannot be told, so that nothing else is said about it. They never get into a scene.
-_SOUND = {"eta": 1.5, "kappa": 1.0, "alpha": 0.1, "rho": 0.5, "tau": 0.0, "theta_deg": [0.0]}
+_SOUND = {
+    "eta": 1.5,
+    "kappa": 1.0,
+    "alpha": 0.1,
+    "rho": 0.5,
+    "tau": 0.0,
+    "theta_deg": [0.0],
+    "target": {"relative_error": 0.01},
+}
 _SOUND_INTERFACE = {"type": "dielectric", "eta": 1.5}
 
 _DIGITS = re.compile(r"\d+(e[+-]?\d+)?", re.IGNORECASE)
 _TYPES = {normal(word): (why, kind) for kind, why, words in TYPES for word in words.split()}
-_PARAMETRIZATIONS = {normal(word): choice for choice, words in PARAMETRIZATIONS.items() for word in words.split()}
+_CHOICES = {
+    key: {normal(word): choice for choice, words in table.items() for word in words.split()}
+    for key, table in (("parametrization", PARAMETRIZATIONS), ("estimator", ESTIMATORS), ("of", OF))
+}
 _PARTS: dict[str, type[Part]] = {"material": Material, "incident": Incident, "slice": Slice, "simulation": Simulation}
 
 
@@ -95,9 +107,7 @@ def value_hint(key: object, value: object) -> tuple[str, str | None]:
 
 def choice_meant(key: str, value: object) -> str | None:
     """The choice that a word of another tool stands for, or None."""
-    if key != "parametrization" or not isinstance(value, str):
-        return None
-    return _PARAMETRIZATIONS.get(normal(value))
+    return _CHOICES.get(key, {}).get(normal(value)) if isinstance(value, str) else None
 
 
 class _Translator:
@@ -110,6 +120,11 @@ class _Translator:
             child = root.child(key)
             if child is not None:
                 root = root.with_child(key, self._keys(child, list(part.model_fields), key))
+        simulation = root.child("simulation")
+        target = simulation.child("target") if simulation else None
+        if simulation is not None and target is not None:
+            target = self._keys(target, list(Target.model_fields), "target")
+            root = root.with_child("simulation", simulation.with_child("target", target))
         material = root.child("material")
         layers = material.child("layers") if material else None
         if material is None or layers is None or not isinstance(layers.value, list):

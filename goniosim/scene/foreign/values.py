@@ -60,6 +60,11 @@ def degrees_as_list(value: object, siblings: Siblings) -> object:
     return _each(as_list(value, siblings), math.degrees)
 
 
+def as_target(value: object, _: Siblings) -> object:
+    """A target of a relative error, which may be a percentage."""
+    return {"relative_error": value} if isinstance(value, (int, float, str)) and not isinstance(value, bool) else None
+
+
 def _each(value: object, function: Callable[[float], float]) -> object:
     if isinstance(value, list):
         items = [_each(item, function) for item in value]

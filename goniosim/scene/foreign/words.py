@@ -54,6 +54,7 @@ _TAU = "tau is the optical depth of one crossing, tau = sigma_a * thickness"
 _THETA = "theta_deg lists the angles of incidence from the normal, in degrees"
 _MEDIUM = "absorption belongs to a medium: write `- medium: {tau: ...}`"
 _TITLE = "title id label"
+_AIM = "{target: {relative_error: 1%}, max_time: 10m}"
 _SPECTRA = _lacking(
     "there are three channels, R, G and B; give a number for each",
     "wavelength wavelengths wavelength_nm lambda spectrum spectra spectral dispersion abbe cauchy",
@@ -69,7 +70,8 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
         _needless("several materials make a study: write study: {name: ..., materials: [...]}", "materials"),
         _needless("layers and a name belong to material", "layers name"),
         _needless("angles belong to incident: {theta_deg: [...]}", "theta_deg theta angles"),
-        _needless("this belongs to simulation: {rays: ..., seed: ...}", "rays samples spp seed threads"),
+        _needless("this belongs to simulation: {rays: ..., seed: ...}", "rays samples spp seed threads estimator"),
+        _needless(f"this belongs to simulation: {_AIM}", "target tolerance accuracy max_rays max_time time_limit"),
         _SPECTRA,
     ),
     "study": (
@@ -196,14 +198,53 @@ KEYS: dict[str, tuple[Meaning, ...]] = {
             "n_threads num_threads workers num_workers cores n_cores n_jobs",
         ),
         _called("seed", "seed is that of the random numbers", "random_seed rng_seed rng"),
-        _called("estimator", "the method is called estimator", "method integrator algorithm type"),
+        _called("estimator", "the method is called estimator", "method integrator algorithm type technique"),
+        _called(
+            "target",
+            "to stop at an accuracy, write target: {relative_error: 1%} instead of rays",
+            "target_error target_accuracy relative_error rel_error max_error tolerance rtol accuracy error noise "
+            "noise_level noise_threshold adaptive_threshold stop_at goal",
+            values.as_target,
+        ),
+        _called(
+            "max_rays",
+            "max_rays limits a target",
+            "max_samples max_spp max_n_rays max_paths ray_limit",
+        ),
+        _called(
+            "max_time",
+            "max_time limits a target",
+            "time time_limit timeout time_budget budget max_seconds seconds duration walltime",
+        ),
         _called("orders", "orders splits the result by events on the top interface", "n_orders max_order"),
         _needless("rays walk until they leave or are absorbed", "depth max_depth bounces max_bounces rr_depth"),
         _needless("the file is chosen on the command line, by -o", "output out output_file file"),
-        _lacking("rays decides how long a run takes", "tolerance target target_error max_time time time_limit"),
         _lacking("rays are traced by the processor, in double precision", "gpu device backend dtype float32 precision"),
         _SPECTRA,
     ),
+    "target": (
+        _called(
+            "relative_error",
+            "relative_error is a standard error over what it is the error of: 1% or 0.01",
+            "error rel_error rel tolerance rtol value level noise accuracy stderr threshold",
+        ),
+        _called("of", "what the error is of", "what quantity metric measure kind type norm"),
+        _needless("limits stand beside target: {max_rays: ..., max_time: ...}", "max_rays max_time time timeout"),
+    ),
+}
+
+# The choices of `simulation.estimator` and of `target.of`.
+ESTIMATORS = {
+    "auto": "automatic default best adaptive optimal",
+    "analog": "analogue plain naive brute_force random_walk path path_tracing unidirectional independent reference",
+    "split": "splitting split_walk branching roulette",
+    "operator": "operators adding_doubling adding matrix",
+    "connection": "connect connections next_event next_event_estimation nee bidirectional bdpt",
+}
+OF = {
+    "slice": "slices image brdf btdf bsdf norm rms rmse",
+    "albedo": "energy flux total reflectance transmittance",
+    "cells": "cell pixel pixels bin bins",
 }
 
 # Names of types: the type as which the rest of the interface is read, or None for what no single one can be.

@@ -1,0 +1,246 @@
+"""`goniosim simulate` and `check` where an accuracy is asked for instead of rays."""
+
+import json
+import os
+import signal
+
+import numpy as np
+import pytest
+
+import goniosim as package
+from goniosim import engine
+from goniosim.store import Standing, open_result, write_result
+
+TIMES = "1% --max-time 10m"
+MISSED = (
+    "goniosim: small.h5: the target of 1 % of slice was not reached with at most 10 min; "
+    "the result is kept: raise max_time, or ask for less"
+)
+
+
+@pytest.fixture
+def aimed(monkeypatch):
+    """An engine that obeys targets: with ``rays`` per direction, and whether that reaches them, by material."""
+    simulate = engine.simulate
+    plan = {"rays": 1000, "missed": set(), "asked": [], "interrupted": False}
+
+    def obey(scene, progress, stop):
+        plan["asked"].append(scene.simulation)
+        changes = {"rays": plan["rays"], "target": None, "max_rays": None, "max_time": None}
+        result = simulate(scene.model_copy(update={"simulation": scene.simulation.model_copy(update=changes)}))
+        progress(plan["rays"], scene.total_rays)
+        if plan["interrupted"]:
+            os.kill(os.getpid(), signal.SIGINT)
+            assert stop.wait(10.0)
+            result.status = "partial"
+        result.config_yaml, result.config_hash = scene.to_yaml(), scene.config_hash()
+        if scene.simulation.target is not None:
+            result.target_reached = scene.material.name not in plan["missed"] and not plan["interrupted"]
+        return result
+
+    monkeypatch.setattr(engine, "simulate", obey)
+    return plan
+
+
+def call(goniosim, line, config="scene.yaml"):
+    return goniosim("simulate", config, *line.split())
+
+
+def test_every_option_arrives(goniosim, folder, aimed):
+    options = "--target 0.7% --of albedo --max-rays 1e9 --max-time 1h30m --estimator analog --seed 3 --threads 2"
+    assert call(goniosim, f"{options} -q") == (0, "", "")
+    (asked,) = aimed["asked"]
+    assert (asked.target.relative_error, asked.target.of, asked.rays) == (0.007, "albedo", None)
+    assert (asked.max_rays, asked.max_time, asked.estimator, asked.seed, asked.threads) == (10**9, 5400, "analog", 3, 2)
+    assert open_result(folder / "small.h5").target_reached is True
+
+
+@pytest.mark.parametrize(
+    "line, code, said",
+    [
+        ("--rays 1e5 --target 1%", 2, "Error: --target decides how many rays are traced: give it or --rays"),
+        ("--target 200%", 2, "'200%' must lie above 0 and below 1: one percent is 1% or 0.01"),
+        ("--target 0,5%", 2, "'0,5%' must be a number without a comma: write 0.5%"),
+        ("--target 1% --max-time soon", 2, "'soon' must be a time above 0: seconds, or 90s, 10m, 2h or 1h30m"),
+        ("--target 1% --of pixels", 2, "'pixels' is not one of 'slice', 'albedo', 'cells'."),
+        ("--estimator analogue", 2, "'analogue' is not one of 'auto', 'analog', 'split', 'operator', 'connection'."),
+        ("--tolerance 1%", 2, "No such option '--tolerance': did you mean --target?"),
+        ("--timeout 60", 2, "No such option '--timeout': did you mean --max-time?"),
+        (
+            "--max-time 10m",
+            3,
+            "--max-time 10m: simulation.max_time: limits a target, and there is none: "
+            "add target: {relative_error: 1%}, or remove it [got '10m']",
+        ),
+        ("--of albedo", 3, "--of albedo: simulation.target.relative_error: is missing: this key is required"),
+    ],
+)
+@pytest.mark.parametrize("command", ["simulate", "check"])
+def test_what_does_not_go_together(goniosim, folder, command, line, code, said):
+    found, out, err = goniosim(command, "scene.yaml", *line.split())
+    assert (found, out) == (code, "")
+    assert any(each.endswith(said) for each in err.splitlines()), err
+    assert not (folder / "small.h5").exists()
+
+
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ("--target 1%", "simulation.target: is not available yet: give rays instead"),
+        ("--estimator split", "simulation.estimator: split is not available yet: use auto or analog"),
+    ],
+)
+def test_what_the_engine_cannot_do(goniosim, folder, line, said):
+    code, _, err = call(goniosim, line)
+    assert (code, err.splitlines()) == (3, [said, "goniosim: error: 1 mistake"])
+    assert not (folder / "small.h5").exists()
+
+
+def test_a_target_that_is_missed_is_9_and_the_result_is_kept(goniosim, folder, aimed):
+    aimed["missed"].add("small")
+    code, out, err = call(goniosim, f"--target {TIMES}")
+    assert (code, err.splitlines()) == (9, [MISSED])
+    assert "target: 1 % of slice, at most 10 min: not reached" in out
+    result = open_result(folder / "small.h5")
+    assert (result.status, result.target_reached) == ("complete", False)
+    code, out, _ = goniosim("info", "small.h5")
+    assert (code, "target: 1 % of slice, at most 10 min: not reached" in out) == (0, True)
+    assert json.loads(goniosim("info", "small.h5", "--json")[1])["target_reached"] is False
+    # Once more, to no avail: nothing is traced, and it is still missed.
+    before = (folder / "small.h5").read_bytes()
+    for line in (TIMES, "2% --max-time 10m", "1% --max-time 5m --max-rays 1e6"):
+        code, out, err = call(goniosim, f"--target {line}")
+        assert (code, out, err.splitlines()[-1]) == (9, "", MISSED)
+        assert "stays as it is: it holds 1000 rays per direction of this scene, by a target of 1 % of slice" in err
+    assert call(goniosim, f"--target {TIMES} -q") == (9, "", f"{MISSED}\n")
+    assert (len(aimed["asked"]), (folder / "small.h5").read_bytes()) == (1, before)
+    # Whoever asks for these rays has them.
+    assert call(goniosim, "--rays 1000 -q") == (0, "", "")
+    # More time is worth another run.
+    aimed["missed"].clear()
+    aimed["rays"] = 2000
+    assert call(goniosim, "--target 1% --max-time 11m -q") == (0, "", "")
+    assert (len(aimed["asked"]), open_result(folder / "small.h5").target_reached) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "line, traced",
+    [
+        ("--target 1%", 1),
+        ("--target 0.05 --max-rays 1e5", 1),
+        ("--rays 1000", 1),
+        ("--rays 500", 1),
+        ("--target 0.9%", 2),
+        ("--target 1% --of albedo", 2),
+        ("--rays 2000", 2),
+    ],
+)
+def test_a_target_that_was_reached_serves_all_that_are_no_stricter(goniosim, folder, aimed, line, traced):
+    assert call(goniosim, f"--target {TIMES} -q") == (0, "", "")
+    aimed["rays"] = 2000
+    assert call(goniosim, f"{line} -q") == (0, "", "")
+    assert len(aimed["asked"]) == traced
+    assert open_result(folder / "small.h5").rays.tolist() == [2000 if traced == 2 else 1000]
+
+
+def test_a_result_with_more_rays_is_not_replaced_by_one_of_a_target(goniosim, folder, aimed):
+    aimed["rays"] = 3000
+    assert call(goniosim, "--rays 3000 -q") == (0, "", "")
+    aimed["rays"] = 1000
+    code, _, err = call(goniosim, "--target 1%")
+    held = "small.h5 stays as it is: it holds 3000 rays per direction of this scene, the new result 1000"
+    assert (code, err.splitlines()[-1].endswith(held)) == (0, True)
+
+
+def test_rays_that_a_target_spread_count_together():
+    asked = {name: package.load_scene(ONE, [change]).simulation for name, change in CHANGES.items()}
+    spread = Standing(np.array([500, 3500]), (), "complete", "", asked["target"], True)
+    partial = Standing(np.array([500, 3500]), (), "partial", "", asked["rays"], None)
+    assert (spread.holds(asked["rays"]), partial.holds(asked["rays"])) == (True, False)
+    assert spread.outweighs(np.array([1000, 1000])) and not spread.outweighs(np.array([2000, 2000]))
+    assert not partial.holds(asked["target"])
+
+
+ONE = """
+material: {name: one, layers: [{interface: {type: lambert, rho: 1}}]}
+incident: {theta_deg: [0, 30]}
+"""
+CHANGES = {"target": "simulation.target={relative_error: 1%}", "rays": "simulation.rays=2000"}
+
+
+def test_in_a_study_all_files_are_written_before_a_miss_counts(goniosim, folder, aimed):
+    aimed["missed"] |= {"coat-0.1", "coat-0.3"}
+    code, out, err = call(goniosim, f"--target {TIMES} -o out", "study.yaml")
+    assert code == 9 and out.count("complete") == 3
+    assert [line.split(": ")[1] for line in err.splitlines()] == ["out/coat-0.1.h5", "out/coat-0.3.h5"]
+    assert len(list((folder / "out").glob("*.h5"))) == 3
+    code, _, err = call(goniosim, f"--target {TIMES} -o out", "study.yaml")
+    assert (code, len(aimed["asked"])) == (9, 3)
+    _, table, _ = goniosim("info", "out")
+    assert table.count("1 % of slice") == 3
+    entries = json.loads(goniosim("info", "out", "--json")[1])
+    assert [(each["rays"], each["target"]) for each in entries] == [
+        (None, {"relative_error": 0.01, "of": "slice"}) for _ in range(3)
+    ]
+
+
+def test_a_python_study_goes_on_where_targets_are_reached(folder, aimed):
+    for _ in range(2):
+        files = package.simulate_study("study.yaml", folder="out", target="1%", max_time="10m")
+        assert len(files) == 3 and len(aimed["asked"]) == 3
+    package.simulate_study("study.yaml", folder="out", target=0.001)
+    assert len(aimed["asked"]) == 6
+
+
+def test_an_interrupted_run_tells_its_rays_and_misses_nothing(goniosim, folder, aimed):
+    aimed["interrupted"] = True
+    code, _, err = call(goniosim, f"--target {TIMES}")
+    assert code == 130
+    assert err.splitlines()[-1].endswith("stopped by Ctrl-C: small.h5 holds 1000 rays per direction (partial)")
+    # It is no answer to the same question, though it has rays.
+    aimed["interrupted"] = False
+    assert call(goniosim, f"--target {TIMES} -q") == (0, "", "")
+    assert open_result(folder / "small.h5").status == "complete"
+
+
+def test_an_analog_result_is_another_estimate_than_auto(goniosim, folder, monkeypatch):
+    """As in files from before there was a choice: their scenes all say analog."""
+    scene = package.load_scene("scene.yaml", ["simulation.rays=100", "simulation.estimator=analog"])
+    write_result(package.simulate(scene), folder / "small.h5")
+    monkeypatch.setattr(engine, "simulate", lambda *_, **__: pytest.fail("traced again"))
+    code, _, err = call(goniosim, "--rays 100")
+    assert (code, err.splitlines()[0]) == (4, "small.h5: simulation.estimator: analog in the file, auto asked for")
+    assert call(goniosim, "--rays 100 --estimator analog -q") == (0, "", "")
+
+
+@pytest.fixture
+def short_probe(monkeypatch):
+    monkeypatch.setattr("goniosim.report.simulation.forecast.PROBE", 0.01)
+    monkeypatch.setattr("goniosim.report.simulation.forecast.PROBE_STUDY", 0.01)
+
+
+@pytest.mark.parametrize(
+    "line, time, seconds",
+    [
+        ("", "until 1 % of slice is reached", None),
+        ("--max-time 10m", "until 1 % of slice is reached, at most 10 min", 600.0),
+        ("--max-rays 1000000000000000 --max-time 10m", "until 1 % of slice is reached, at most 10 min", 600.0),
+    ],
+)
+def test_check_tells_what_limits_a_target(goniosim, folder, short_probe, line, time, seconds):
+    code, out, _ = goniosim("check", "scene.yaml", "--target", "1%", *line.split())
+    assert code == 0
+    assert f"  time        {time}\n" in out
+    assert "  target: 1 % of slice" in out
+    one = json.loads(goniosim("check", "scene.yaml", "--target", "1%", *line.split(), "--json")[1])
+    assert (one["seconds"], one["rays"], one["target"]) == (seconds, None, {"relative_error": 0.01, "of": "slice"})
+
+
+def test_check_of_a_study_with_a_target(goniosim, folder, short_probe):
+    _, out, _ = goniosim("check", "study.yaml", "--target", "1%")
+    assert out.count("1 % of slice") == 3 and "  Together: as it takes, at most" in out
+    assert json.loads(goniosim("check", "study.yaml", "--target", "1%", "--json")[1])["seconds"] is None
+    _, out, _ = goniosim("check", "study.yaml", "--target", "1%", "--max-time", "10m")
+    assert "  Together: 30 min, at most" in out
+    fewest = json.loads(goniosim("check", "scene.yaml", "--target", "1%", "--max-rays", "1e9", "--json")[1])
+    assert fewest["seconds"] == pytest.approx(1e9 / fewest["rays_per_second"])
