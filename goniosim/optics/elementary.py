@@ -69,7 +69,19 @@ def fma(typingctx, x, y, z):
 def sincos_turns(u):
     """Sine and cosine of ``2 pi u`` for u in [0, 1]."""
     quadrant = math.floor(4.0 * u + 0.5)
-    x = (4.0 * u - quadrant) * _HALF_PI
+    s, c = sincos_octants(4.0 * u - quadrant)
+    odd = (quadrant == 1.0) | (quadrant == 3.0)
+    sine = c if odd else s
+    cosine = s if odd else c
+    sine = -sine if (quadrant == 2.0) | (quadrant == 3.0) else sine
+    cosine = -cosine if (quadrant == 1.0) | (quadrant == 2.0) else cosine
+    return sine, cosine
+
+
+@scalar
+def sincos_octants(t):
+    """Sine and cosine of ``t`` quarter turns, t in [-1/2, 1/2]."""
+    x = t * _HALF_PI
     z = x * x
     # fmt: off
     s = x * (1.0 + z * (-1.0 / 6.0 + z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362880.0
@@ -77,12 +89,7 @@ def sincos_turns(u):
     c = 1.0 + z * (-0.5 + z * (1.0 / 24.0 + z * (-1.0 / 720.0 + z * (1.0 / 40320.0
         + z * (-1.0 / 3628800.0 + z * (1.0 / 479001600.0 - z / 87178291200.0))))))
     # fmt: on
-    odd = (quadrant == 1.0) | (quadrant == 3.0)
-    sine = c if odd else s
-    cosine = s if odd else c
-    sine = -sine if (quadrant == 2.0) | (quadrant == 3.0) else sine
-    cosine = -cosine if (quadrant == 1.0) | (quadrant == 2.0) else cosine
-    return sine, cosine
+    return s, c
 
 
 @scalar
