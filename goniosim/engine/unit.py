@@ -9,7 +9,7 @@ import numpy as np
 from .._jit import kernel
 from ..optics.random import derive_key
 from .layout import EVENTS, LEFT, N_LEDGER, N_SCRATCH, N_STATE, WEIGHT
-from .tally import record_length
+from .tally import empty_records
 from .walk import walk
 
 BATCH = 512
@@ -37,7 +37,7 @@ class Tally:
 
     def __init__(self, plan):
         cells = plan.n_slots * plan.rows * plan.columns
-        self.histogram = np.zeros((cells, record_length(plan.n_distinct)))
+        self.histogram = empty_records(cells, plan.n_distinct)
         self.ledgers = np.zeros((PARTS, N_LEDGER, plan.n_distinct))
 
     def clear(self):
@@ -99,8 +99,6 @@ class Workspace:
         exits = np.empty((2, fields, 2 * BATCH))
         self.n_exits = np.zeros(2, np.int64)
         self.space = (self.state, self.filled, self.queues, work, scratch, steps, places, exits, self.n_exits)
-        # In the analog estimator a path leaves once: every deposit is a path of its own.
-        self.paths = np.arange(2 * BATCH, dtype=np.int64)
         self.places = np.empty(2 * BATCH, np.int32)
 
     def run(self, direction, rays, key, tally, stop):
@@ -152,7 +150,6 @@ class Workspace:
             columns,
             light,
             plan.slots,
-            self.paths,
             self.places,
             histogram,
             plan.n_distinct,
