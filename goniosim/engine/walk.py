@@ -96,7 +96,7 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
             _pop(queues[q], filled[q], work, n, Z if forgets[q // 2] else X)
             medium = q // 2 - 1 if q % 2 == ABOVE else q // 2
             if absorbs[medium]:
-                absorb(work, n, taus[medium], scratch[BOOST], ledger)
+                absorb(work, n, taus[medium], scratch[GAIN], scratch[BOOST], ledger)
             gambled = roulette(work, n, scales[q], scratch[BOOST], key, ledger)
 
         k = q // 2
