@@ -12,6 +12,7 @@ from ..free_memory import free_memory, resident_memory
 from .layout import DOWN, N_LEDGER, N_SCRATCH, UP, WEIGHT
 from .plan import make_plan
 from .schedule import MOST_LEDGERS, Schedule, units_in_flight
+from .sorting import LANES
 from .tally import record_length
 from .unit import BATCH, PARTS, queue_capacity
 
@@ -138,7 +139,7 @@ def _queues(plan):
     """Bytes of a `unit.Workspace`."""
     queues = 2 * len(plan.kinds)
     fields = WEIGHT + plan.n_distinct + (1 if plan.orders else 0)
-    rays = queues * queue_capacity(queues) + 5 * BATCH
+    rays = queues * queue_capacity(queues) + 5 * BATCH + 2 * LANES
     return (fields * rays + N_SCRATCH * BATCH) * _NUMBER + len(plan.theta_deg) * _thresholds(plan)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from .._jit import kernel
 from ..optics.random import derive_key
 from .layout import EVENTS, LEFT, N_LEDGER, N_SCRATCH, N_STATE, WEIGHT
+from .sorting import LANES
 from .tally import empty_records
 from .walk import walk
 
@@ -68,8 +69,9 @@ def queue_capacity(queues):
     every queue holds less than one. Serving takes a batch from the fullest queue, and adds no more in
     all. If the fullest is one of the j, these gain nothing. If not, they held at most the share
     j / (j + 1) of what they and the fullest did, and gain one at most: that is the bound again.
+    Behind the last ray of a queue is room for the lanes that are moved along with it.
     """
-    return math.ceil(BATCH * (1.0 + math.fsum(1.0 / j for j in range(1, queues + 1))))
+    return math.ceil(BATCH * (1.0 + math.fsum(1.0 / j for j in range(1, queues + 1)))) + LANES
 
 
 class Workspace:
@@ -96,7 +98,7 @@ class Workspace:
         scratch = np.empty((N_SCRATCH, BATCH))
         steps = np.empty(BATCH, np.uint64)
         places = np.empty((2, BATCH), np.uint32)
-        exits = np.empty((2, fields, 2 * BATCH))
+        exits = np.empty((2, fields, 2 * BATCH + LANES))
         self.n_exits = np.zeros(2, np.int64)
         self.space = (self.state, self.filled, self.queues, work, scratch, steps, places, exits, self.n_exits)
         self.places = np.empty(2 * BATCH, np.int32)

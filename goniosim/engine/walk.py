@@ -7,8 +7,6 @@ same kind of interface from the same side, so the loops have no branches, and a 
 the code of the layers it has.
 """
 
-import numpy as np
-
 from .._jit import kernel, stage
 from ..optics.random import derive_key
 from . import tally
@@ -30,12 +28,11 @@ from .layout import (
     X,
     Z,
 )
+from .sorting import move, sort
 from .stages import scatter
 from .stages.travel import absorb, drop_dead, roulette
 
 ABOVE, BELOW = 0, 1
-_HALF_WORD = np.uint64(32)
-_LOW_HALF = np.uint64(0xFFFFFFFF)
 
 # Stages per queue that a part of a work unit may run after its last ray was launched. Rays that are
 # still on their way then are booked as lost. No ray is cut before it has met this many interfaces.
@@ -109,7 +106,7 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
         if gambled:
             drop_dead(scratch[GAIN], n, scratch[BOOST])
 
-        n_reflected, n_through = _sort(scratch[GAIN], scratch[TRANSMITTED], n, steps, places[0], places[1])
+        n_reflected, n_through = sort(scratch[GAIN], scratch[TRANSMITTED], n, steps, places[0], places[1])
         for through in range(2):
             count = n_through if through else n_reflected
             if count == 0:
@@ -117,7 +114,7 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
             up = (through == 1) == (side == BELOW)
             if up and k == 0:
                 if side == ABOVE:
-                    _book_direct(work, places[0], count, ledger)
+                    _book_direct(work, n, scratch[GAIN], scratch[TRANSMITTED], ledger)
                 else:
                     _gather(work, n, places[through], count, exits[UP], n_exits[UP], X)
                     _book(exits[UP], n_exits[UP], count, ledger, REFLECTED_INTERNAL)
@@ -166,36 +163,9 @@ def _pop(queue, start, work, n, first):
 
 
 @stage
-def _sort(gain, transmitted, n, steps, reflected_places, through_places):
-    """List the places of the rays that were reflected and of those that went through.
-
-    Every ray is written to the end of both lists; its step moves the end of one of them, or
-    of none. Both ends are halves of one number, so that the loop that cannot be vectorised does
-    a single addition.
-    """
-    for i in range(n):
-        alive = 1 if gain[i] > 0.0 else 0
-        through = alive if transmitted[i] > 0.0 else 0
-        steps[i] = (np.uint64(through) << _HALF_WORD) | np.uint64(alive - through)
-    ends = np.uint64(0)
-    for i in range(n):
-        reflected_places[ends & _LOW_HALF] = i
-        through_places[ends >> _HALF_WORD] = i
-        ends += steps[i]
-    return np.int64(ends & _LOW_HALF), np.int64(ends >> _HALF_WORD)
-
-
-@stage
 def _gather(work, n, places, count, queue, start, first):
     for field in range(first, work.shape[0]):
-        source = work[field]
-        row = queue[field][start : start + count]
-        if count == n:
-            for i in range(n):
-                row[i] = source[i]
-        else:
-            for i in range(count):
-                row[i] = source[places[i]]
+        move(work[field], n, places, count, queue[field], start)
 
 
 @stage
@@ -209,12 +179,12 @@ def _book(batch, start, count, ledger, entry):
 
 
 @stage
-def _book_direct(work, places, count, ledger):
+def _book_direct(work, n, gain, transmitted, ledger):
     for c in range(ledger.shape[1]):
         weight = work[WEIGHT + c]
         total = 0.0
-        for i in range(count):
-            total += weight[places[i]]
+        for i in range(n):
+            total += weight[i] if (gain[i] > 0.0) & (transmitted[i] <= 0.0) else 0.0
         ledger[REFLECTED_DIRECT, c] += total
 
 
