@@ -94,13 +94,12 @@ class Workspace:
         self.state = np.zeros(N_STATE, np.int64)
         self.filled = np.zeros(2 * k, np.int64)
         self.queues = np.empty((2 * k, fields, queue_capacity(2 * k)))
-        work = np.empty((fields, BATCH))
         scratch = np.empty((N_SCRATCH, BATCH))
         steps = np.empty(BATCH, np.uint64)
         places = np.empty((2, BATCH), np.uint32)
         exits = np.empty((2, fields, 2 * BATCH + LANES))
         self.n_exits = np.zeros(2, np.int64)
-        self.space = (self.state, self.filled, self.queues, work, scratch, steps, places, exits, self.n_exits)
+        self.space = (self.state, self.filled, self.queues, scratch, steps, places, exits, self.n_exits)
         self.places = np.empty(2 * BATCH, np.int32)
 
     def run(self, direction, rays, key, tally, stop):

@@ -57,16 +57,16 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
         Events after which to return to the caller, who looks at signals.
     space : tuple
         The arrays of a `unit.Workspace`: state of the part, number of rays in each queue, queues,
-        one batch, its scratch rows, one and two rows for sorting it, and the rays that left upwards and
+        scratch rows of one batch, one and two rows for sorting it, and the rays that left upwards and
         downwards and await their cell, with their numbers.
     ledger : ndarray, shape (N_LEDGER, channels)
     cells : tuple
         What `tally.flush` needs.
     """
     kinds, alphas, etas, spectral, forgets, taus, absorbs, with_orders = stack
-    state, filled, queues, work, scratch, steps, places, exits, n_exits = space
+    state, filled, queues, scratch, steps, places, exits, n_exits = space
     n_interfaces = kinds.shape[0]
-    batch_size = work.shape[1]
+    batch_size = scratch.shape[1]
     channels = ledger.shape[1]
     stop_at = state[EVENTS] + budget
     while state[EVENTS] < stop_at:
@@ -76,8 +76,10 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
         if filled[q] < batch_size and state[LEFT] > 0:
             n = min(batch_size, state[LEFT])
             state[LEFT] -= n
-            _launch(work, n, light, channels)
+            # To a queue that holds nothing, since no ray comes back from above.
             q = 0
+            filled[q] = n
+            _launch(queues[q], n, light, channels)
             gambled = False
         elif filled[q] == 0:
             _leave(exits, n_exits, cells, 1)
@@ -89,15 +91,15 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
                     _cut(queues, filled, ledger)
                     continue
             n = min(batch_size, filled[q])
-            filled[q] -= n
-            _pop(queues[q], filled[q], work, n, Z if forgets[q // 2] else X)
             medium = q // 2 - 1 if q % 2 == ABOVE else q // 2
             if absorbs[medium]:
-                absorb(work, n, taus[medium], scratch[GAIN], scratch[BOOST], ledger)
-            gambled = roulette(work, n, scales[q], scratch[BOOST], key, ledger)
+                absorb(queues[q], n, taus[medium], scratch[GAIN], scratch[BOOST], ledger)
+            gambled = roulette(queues[q], n, scales[q], scratch[BOOST], key, ledger)
 
         k = q // 2
         side = q % 2
+        # The first of the queue, where they lie: what leaves an interface never comes back to the same queue.
+        work = queues[q]
         state[EVENTS] += n
         if with_orders and k == 0:
             _count_order(work[WEIGHT + channels], n)
@@ -128,6 +130,8 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
                 first = Z if forgets[target // 2] else X
                 _gather(work, n, places[through], count, queues[target], filled[target], first)
                 filled[target] += count
+        _close_gap(work, n, filled[q], Z if forgets[k] else X)
+        filled[q] -= n
         _leave(exits, n_exits, cells, batch_size)
     return False
 
@@ -154,12 +158,13 @@ def _launch(work, n, light, channels):
 
 
 @stage
-def _pop(queue, start, work, n, first):
-    for field in range(first, work.shape[0]):
-        source = queue[field][start : start + n]
-        row = work[field]
-        for i in range(n):
-            row[i] = source[i]
+def _close_gap(queue, n, filled, first):
+    """Move the rays of a queue that were not served to its beginning."""
+    for field in range(first, queue.shape[0]):
+        row = queue[field]
+        rest = row[n:filled]
+        for i in range(filled - n):
+            row[i] = rest[i]
 
 
 @stage
