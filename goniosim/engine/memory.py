@@ -140,7 +140,7 @@ def _queues(plan):
     queues = 2 * len(plan.kinds)
     fields = WEIGHT + plan.n_distinct + (1 if plan.orders else 0)
     rays = queues * queue_capacity(queues) + 4 * BATCH + 2 * LANES
-    return (fields * rays + N_SCRATCH * BATCH) * _NUMBER + len(plan.theta_deg) * _thresholds(plan)
+    return (fields * rays + N_SCRATCH * (BATCH + LANES)) * _NUMBER + len(plan.theta_deg) * _thresholds(plan)
 
 
 def _thresholds(plan):

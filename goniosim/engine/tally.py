@@ -3,6 +3,8 @@
 The statistical unit is the path, which leaves once: every deposit is squared by itself.
 """
 
+import math
+
 import numpy as np
 
 from .._jit import intrinsic, ir, stage, types
@@ -21,10 +23,15 @@ def record_length(channels):
 
 def empty_records(cells, channels):
     """Cleared records, shape (cells, record_length(channels)), each in cache lines of its own."""
-    length = record_length(channels)
-    room = np.zeros(cells * length + _NUMBERS_PER_LINE)
+    return aligned((cells, record_length(channels)))
+
+
+def aligned(shape):
+    """Zeros that begin with a cache line."""
+    count = math.prod(shape)
+    room = np.zeros(count + _NUMBERS_PER_LINE)
     first = -room.ctypes.data // room.itemsize % _NUMBERS_PER_LINE
-    return room[first : first + cells * length].reshape(cells, length)
+    return room[first : first + count].reshape(shape)
 
 
 @stage

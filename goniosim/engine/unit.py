@@ -10,7 +10,7 @@ from .._jit import kernel
 from ..optics.random import derive_key
 from .layout import EVENTS, LEFT, N_LEDGER, N_SCRATCH, N_STATE, WEIGHT
 from .sorting import LANES
-from .tally import empty_records
+from .tally import aligned, empty_records
 from .walk import walk
 
 BATCH = 512
@@ -71,7 +71,8 @@ def queue_capacity(queues):
     j / (j + 1) of what they and the fullest did, and gain one at most: that is the bound again.
     Behind the last ray of a queue is room for the lanes that are moved along with it.
     """
-    return math.ceil(BATCH * (1.0 + math.fsum(1.0 / j for j in range(1, queues + 1)))) + LANES
+    most = BATCH * (1.0 + math.fsum(1.0 / j for j in range(1, queues + 1)))
+    return LANES * (math.ceil(most / LANES) + 1)
 
 
 class Workspace:
@@ -93,11 +94,12 @@ class Workspace:
         self.plan = plan
         self.state = np.zeros(N_STATE, np.int64)
         self.filled = np.zeros(2 * k, np.int64)
-        self.queues = np.empty((2 * k, fields, queue_capacity(2 * k)))
-        scratch = np.empty((N_SCRATCH, BATCH))
+        self.queues = aligned((2 * k, fields, queue_capacity(2 * k)))
+        # Not 512 numbers from row to row: in the nearest cache they would all claim the same few places.
+        scratch = aligned((N_SCRATCH, BATCH + LANES))
         steps = np.empty(BATCH, np.uint64)
         places = np.empty((2, BATCH), np.uint32)
-        exits = np.empty((2, fields, 2 * BATCH + LANES))
+        exits = aligned((2, fields, 2 * BATCH + LANES))
         self.n_exits = np.zeros(2, np.int64)
         self.space = (self.state, self.filled, self.queues, scratch, steps, places, exits, self.n_exits)
         self.places = np.empty(2 * BATCH, np.int32)

@@ -66,7 +66,7 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
     kinds, alphas, etas, spectral, forgets, taus, absorbs, with_orders = stack
     state, filled, queues, scratch, steps, places, exits, n_exits = space
     n_interfaces = kinds.shape[0]
-    batch_size = scratch.shape[1]
+    batch_size = steps.shape[0]
     channels = ledger.shape[1]
     stop_at = state[EVENTS] + budget
     while state[EVENTS] < stop_at:
