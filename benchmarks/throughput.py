@@ -1,15 +1,17 @@
 """Throughput of the analog estimator: rays per CPU-second on three stacks at three angles.
 
-    python benchmarks/throughput.py [--rays 2e7] [--peer PATH] [--repeat 3]
+    python benchmarks/throughput.py [--rays 2e6] [--peer PATH] [--repeat 9]
 
 Prints one table: goniosim, the slow one-ray-at-a-time reference tracer of the tests, and, with
 ``--peer``, a C++ goniometer that traces one ray at a time (an executable that takes
-``--theta --n --threads --stack --out`` and prints JSON with ``cpu_seconds``). Everything is
-measured in one run, in turns, on one thread; the best of the repetitions counts for each.
+``--theta --n --threads --stack --out --moments`` and prints JSON with ``cpu_seconds``). Everything is
+measured in one run, in turns, on one thread, error bars included; the median of the repetitions counts, for the
+ratio to the C++ program the median of that of neighbouring runs.
 """
 
 import argparse
 import json
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -22,7 +24,7 @@ from goniosim.scene import parse_scene
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 from reference.tracer import stack_from_scene, trace  # noqa: E402
 
-ANGLES = (0.0, 60.0, 85.0)
+ANGLES = (30.0, 60.0, 80.0)
 
 LAYERS = {
     "plastic": [
@@ -90,8 +92,8 @@ def peer_rate(program, name, theta, rays):
         stack = Path(folder) / "stack.txt"
         stack.write_text(stack_text(LAYERS[name]))
         out = Path(folder) / "out"
-        command = [program, "--theta", theta, "--n", rays, "--threads", 1, "--stack", stack, "--out", out, "--quiet"]
-        subprocess.run([str(part) for part in command], check=True)
+        command = [program, "--theta", theta, "--n", rays, "--threads", 1, "--stack", stack, "--out", out]
+        subprocess.run([*(str(part) for part in command), "--moments", "--quiet"], check=True)
         with open(out, "rb") as f:
             return rays / json.loads(f.readline())["runs"][0]["cpu_seconds"]
 
@@ -99,8 +101,8 @@ def peer_rate(program, name, theta, rays):
 def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rays", type=float, default=2e7, help="rays per measurement of goniosim")
-    parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--rays", type=float, default=2e6, help="rays per measurement of goniosim")
+    parser.add_argument("--repeat", type=int, default=9)
     parser.add_argument("--peer", help="executable of a C++ goniometer to compare with")
     options = parser.parse_args()
     rays = int(options.rays)
@@ -118,12 +120,15 @@ def main():
     print(f"{'stack':10}{'theta':>6}" + "".join(f"{name:>12}" for name in runners) + ratio_head)
     for name in LAYERS:
         for theta in ANGLES:
-            best = dict.fromkeys(runners, 0.0)
+            rates = {key: [] for key in runners}
             for _ in range(options.repeat):
                 for key, run in runners.items():
-                    best[key] = max(best[key], run(name, theta))
-            ratio = f"{best['goniosim'] / best['C++']:9.1f}" if options.peer else ""
-            print(f"{name:10}{theta:6.0f}" + "".join(f"{best[key] / 1e6:12.2f}" for key in runners) + ratio, flush=True)
+                    rates[key].append(run(name, theta))
+            ratio = ""
+            if options.peer:
+                ratio = f"{statistics.median(a / b for a, b in zip(rates['goniosim'], rates['C++'], strict=True)):9.1f}"
+            row = "".join(f"{statistics.median(rates[key]) / 1e6:12.2f}" for key in runners)
+            print(f"{name:10}{theta:6.0f}{row}{ratio}", flush=True)
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ def _first_batches(plan, workspace, direction):
         q = int(np.argmax(filled))
         if q in waiting and (filled[q] >= BATCH or (workspace.state[LEFT] == 0 and filled[q] > 0)):
             waiting.remove(q)
-            batch = queues[q, :, max(0, filled[q] - BATCH) : filled[q]]
+            batch = queues[q, :, : min(BATCH, filled[q])]
             yield q, _after_medium(plan, q, batch)
         if workspace.advance(direction, key, 1, ledger, cells):
             return

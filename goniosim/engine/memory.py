@@ -15,6 +15,7 @@ from .estimators.choose import ANALOG, choose
 from .layout import DOWN, N_LEDGER, N_SCRATCH, UP, WEIGHT
 from .plan import make_plan
 from .schedule import AUDIT_RAYS, MOST_LEDGERS, Schedule
+from .sorting import LANES
 from .tally import record_length
 from .unit import BATCH, PARTS, queue_capacity
 
@@ -184,8 +185,8 @@ def _queues(plan):
     """Bytes of a `unit.Workspace`."""
     queues = 2 * len(plan.kinds)
     fields = WEIGHT + plan.n_distinct + (1 if plan.orders else 0)
-    rays = queues * queue_capacity(queues) + 5 * BATCH
-    return (fields * rays + N_SCRATCH * BATCH) * _NUMBER + len(plan.theta_deg) * _thresholds(plan)
+    rays = queues * queue_capacity(queues) + 4 * BATCH + 2 * LANES
+    return (fields * rays + N_SCRATCH * (BATCH + LANES)) * _NUMBER + len(plan.theta_deg) * _thresholds(plan)
 
 
 def _thresholds(plan):

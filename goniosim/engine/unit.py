@@ -9,7 +9,8 @@ import numpy as np
 from .._jit import kernel
 from ..optics.random import derive_key
 from .layout import EVENTS, LEFT, N_LEDGER, N_SCRATCH, N_STATE, WEIGHT
-from .tally import record_length
+from .sorting import LANES
+from .tally import aligned, empty_records
 from .walk import walk
 
 BATCH = 512
@@ -37,7 +38,7 @@ class Tally:
 
     def __init__(self, plan):
         cells = plan.n_slots * plan.rows * plan.columns
-        self.histogram = np.zeros((cells, record_length(plan.n_distinct)))
+        self.histogram = empty_records(cells, plan.n_distinct)
         self.ledgers = np.zeros((PARTS, N_LEDGER, plan.n_distinct))
 
     def clear(self):
@@ -68,8 +69,10 @@ def queue_capacity(queues):
     every queue holds less than one. Serving takes a batch from the fullest queue, and adds no more in
     all. If the fullest is one of the j, these gain nothing. If not, they held at most the share
     j / (j + 1) of what they and the fullest did, and gain one at most: that is the bound again.
+    Behind the last ray of a queue is room for the lanes that are moved along with it.
     """
-    return math.ceil(BATCH * (1.0 + math.fsum(1.0 / j for j in range(1, queues + 1))))
+    most = BATCH * (1.0 + math.fsum(1.0 / j for j in range(1, queues + 1)))
+    return LANES * (math.ceil(most / LANES) + 1)
 
 
 class Workspace:
@@ -91,16 +94,14 @@ class Workspace:
         self.plan = plan
         self.state = np.zeros(N_STATE, np.int64)
         self.filled = np.zeros(2 * k, np.int64)
-        self.queues = np.empty((2 * k, fields, queue_capacity(2 * k)))
-        work = np.empty((fields, BATCH))
-        scratch = np.empty((N_SCRATCH, BATCH))
+        self.queues = aligned((2 * k, fields, queue_capacity(2 * k)))
+        # Not 512 numbers from row to row: in the nearest cache they would all claim the same few places.
+        scratch = aligned((N_SCRATCH, BATCH + LANES))
         steps = np.empty(BATCH, np.uint64)
         places = np.empty((2, BATCH), np.uint32)
-        exits = np.empty((2, fields, 2 * BATCH))
+        exits = aligned((2, fields, 2 * BATCH + LANES))
         self.n_exits = np.zeros(2, np.int64)
-        self.space = (self.state, self.filled, self.queues, work, scratch, steps, places, exits, self.n_exits)
-        # In the analog estimator a path leaves once: every deposit is a path of its own.
-        self.paths = np.arange(2 * BATCH, dtype=np.int64)
+        self.space = (self.state, self.filled, self.queues, scratch, steps, places, exits, self.n_exits)
         self.places = np.empty(2 * BATCH, np.int32)
 
     def run(self, direction, rays, key, tally, stop):
@@ -152,7 +153,6 @@ class Workspace:
             columns,
             light,
             plan.slots,
-            self.paths,
             self.places,
             histogram,
             plan.n_distinct,

@@ -7,8 +7,6 @@ same kind of interface from the same side, so the loops have no branches, and a 
 the code of the layers it has.
 """
 
-import numpy as np
-
 from .._jit import kernel, stage
 from ..optics.random import derive_key
 from . import tally
@@ -30,12 +28,11 @@ from .layout import (
     X,
     Z,
 )
+from .sorting import move, sort
 from .stages import scatter
 from .stages.travel import absorb, drop_dead, roulette
 
 ABOVE, BELOW = 0, 1
-_HALF_WORD = np.uint64(32)
-_LOW_HALF = np.uint64(0xFFFFFFFF)
 
 # Stages per queue that a part of a work unit may run after its last ray was launched. Rays that are
 # still on their way then are booked as lost. No ray is cut before it has met this many interfaces.
@@ -60,16 +57,16 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
         Events after which to return to the caller, who looks at signals.
     space : tuple
         The arrays of a `unit.Workspace`: state of the part, number of rays in each queue, queues,
-        one batch, its scratch rows, one and two rows for sorting it, and the rays that left upwards and
+        scratch rows of one batch, one and two rows for sorting it, and the rays that left upwards and
         downwards and await their cell, with their numbers.
     ledger : ndarray, shape (N_LEDGER, channels)
     cells : tuple
         What `tally.flush` needs.
     """
     kinds, alphas, etas, spectral, forgets, taus, absorbs, with_orders = stack
-    state, filled, queues, work, scratch, steps, places, exits, n_exits = space
+    state, filled, queues, scratch, steps, places, exits, n_exits = space
     n_interfaces = kinds.shape[0]
-    batch_size = work.shape[1]
+    batch_size = steps.shape[0]
     channels = ledger.shape[1]
     stop_at = state[EVENTS] + budget
     while state[EVENTS] < stop_at:
@@ -79,8 +76,10 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
         if filled[q] < batch_size and state[LEFT] > 0:
             n = min(batch_size, state[LEFT])
             state[LEFT] -= n
-            _launch(work, n, light, channels)
+            # To a queue that holds nothing, since no ray comes back from above.
             q = 0
+            filled[q] = n
+            _launch(queues[q], n, light, channels)
             gambled = False
         elif filled[q] == 0:
             _leave(exits, n_exits, cells, 1)
@@ -92,15 +91,15 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
                     _cut(queues, filled, ledger)
                     continue
             n = min(batch_size, filled[q])
-            filled[q] -= n
-            _pop(queues[q], filled[q], work, n, Z if forgets[q // 2] else X)
             medium = q // 2 - 1 if q % 2 == ABOVE else q // 2
             if absorbs[medium]:
-                absorb(work, n, taus[medium], scratch[BOOST], ledger)
-            gambled = roulette(work, n, scales[q], scratch[BOOST], key, ledger)
+                absorb(queues[q], n, taus[medium], scratch[GAIN], scratch[BOOST], ledger)
+            gambled = roulette(queues[q], n, scales[q], scratch[BOOST], key, ledger)
 
         k = q // 2
         side = q % 2
+        # The first of the queue, where they lie: what leaves an interface never comes back to the same queue.
+        work = queues[q]
         state[EVENTS] += n
         if with_orders and k == 0:
             _count_order(work[WEIGHT + channels], n)
@@ -109,7 +108,7 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
         if gambled:
             drop_dead(scratch[GAIN], n, scratch[BOOST])
 
-        n_reflected, n_through = _sort(scratch[GAIN], scratch[TRANSMITTED], n, steps, places[0], places[1])
+        n_reflected, n_through = sort(scratch[GAIN], scratch[TRANSMITTED], n, steps, places[0], places[1])
         for through in range(2):
             count = n_through if through else n_reflected
             if count == 0:
@@ -117,7 +116,7 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
             up = (through == 1) == (side == BELOW)
             if up and k == 0:
                 if side == ABOVE:
-                    _book_direct(work, places[0], count, ledger)
+                    _book_direct(work, n, scratch[GAIN], scratch[TRANSMITTED], ledger)
                 else:
                     _gather(work, n, places[through], count, exits[UP], n_exits[UP], X)
                     _book(exits[UP], n_exits[UP], count, ledger, REFLECTED_INTERNAL)
@@ -131,6 +130,8 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
                 first = Z if forgets[target // 2] else X
                 _gather(work, n, places[through], count, queues[target], filled[target], first)
                 filled[target] += count
+        _close_gap(work, n, filled[q], Z if forgets[k] else X)
+        filled[q] -= n
         _leave(exits, n_exits, cells, batch_size)
     return False
 
@@ -157,45 +158,19 @@ def _launch(work, n, light, channels):
 
 
 @stage
-def _pop(queue, start, work, n, first):
-    for field in range(first, work.shape[0]):
-        source = queue[field][start : start + n]
-        row = work[field]
-        for i in range(n):
-            row[i] = source[i]
-
-
-@stage
-def _sort(gain, transmitted, n, steps, reflected_places, through_places):
-    """List the places of the rays that were reflected and of those that went through.
-
-    Every ray is written to the end of both lists; its step moves the end of one of them, or
-    of none. Both ends are halves of one number, so that the loop that cannot be vectorised does
-    a single addition.
-    """
-    for i in range(n):
-        alive = 1 if gain[i] > 0.0 else 0
-        through = alive if transmitted[i] > 0.0 else 0
-        steps[i] = (np.uint64(through) << _HALF_WORD) | np.uint64(alive - through)
-    ends = np.uint64(0)
-    for i in range(n):
-        reflected_places[ends & _LOW_HALF] = i
-        through_places[ends >> _HALF_WORD] = i
-        ends += steps[i]
-    return np.int64(ends & _LOW_HALF), np.int64(ends >> _HALF_WORD)
+def _close_gap(queue, n, filled, first):
+    """Move the rays of a queue that were not served to its beginning."""
+    for field in range(first, queue.shape[0]):
+        row = queue[field]
+        rest = row[n:filled]
+        for i in range(filled - n):
+            row[i] = rest[i]
 
 
 @stage
 def _gather(work, n, places, count, queue, start, first):
     for field in range(first, work.shape[0]):
-        source = work[field]
-        row = queue[field][start : start + count]
-        if count == n:
-            for i in range(n):
-                row[i] = source[i]
-        else:
-            for i in range(count):
-                row[i] = source[places[i]]
+        move(work[field], n, places, count, queue[field], start)
 
 
 @stage
@@ -209,12 +184,12 @@ def _book(batch, start, count, ledger, entry):
 
 
 @stage
-def _book_direct(work, places, count, ledger):
+def _book_direct(work, n, gain, transmitted, ledger):
     for c in range(ledger.shape[1]):
         weight = work[WEIGHT + c]
         total = 0.0
-        for i in range(count):
-            total += weight[places[i]]
+        for i in range(n):
+            total += weight[i] if (gain[i] > 0.0) & (transmitted[i] <= 0.0) else 0.0
         ledger[REFLECTED_DIRECT, c] += total
 
 

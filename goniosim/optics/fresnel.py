@@ -48,14 +48,46 @@ def fresnel_dielectric(cos_i, eta):
     reflectance, cos_t : float
         1 and 0 under total internal reflection.
     """
-    c, g, g2, m, inverse_s, inverse_p = _dielectric(cos_i, eta)
-    eta2 = eta * eta
-    # (n^2 + 1) c^2 - 1, which is also (n^2 + 1) g^2 - n^4
-    brewster = (eta2 + 1.0) * (g2 if eta < 1.0 else c * c) - (eta2 * eta2 if eta < 1.0 else 1.0)
+    c, g, g2, m, sum_s, sum_p = _dielectric(cos_i, 1.0, eta)
+    # One division for both polarisations.
+    inverse = 1.0 / (sum_s * sum_p)
+    inverse_s = sum_p * inverse
+    inverse_p = sum_s * inverse
     r_s = m * inverse_s * inverse_s
-    r_p = m * brewster * inverse_p * inverse_p
+    r_p = m * _brewster(c, g2, 1.0, eta) * inverse_p * inverse_p
     reflectance = 1.0 if g2 <= 0.0 else min(1.0, 0.5 * (r_s * r_s + r_p * r_p))
     return reflectance, g / eta
+
+
+@scalar
+def reflects(u, c, square, eta):
+    """Whether a dielectric reflects a ray: the coin that falls with the reflectance, thrown without a division.
+
+    Parameters
+    ----------
+    u : float
+        Uniform in [0, 1).
+    c : float
+        Product of the view and a normal of any length, not negative.
+    square : float
+        Squared length of that normal.
+    eta : float
+        Relative index n_t / n_i.
+
+    Returns
+    -------
+    reflect : bool
+        ``u < reflectance`` of `fresnel_dielectric`.
+    g : float
+        ``eta cos_t`` times the length of the normal; 0 under total internal reflection.
+    """
+    c, g, g2, m, sum_s, sum_p = _dielectric(c, square, eta)
+    # r_s and r_p times the same factor
+    p = sum_s * sum_p
+    s_part = m * square * sum_p * sum_p
+    p_part = m * _brewster(c, g2, square, eta) * sum_s * sum_s
+    wins = 2.0 * u * (p * p) * (p * p) < s_part * s_part + p_part * p_part
+    return wins | (g2 <= 0.0), g
 
 
 @scalar
@@ -64,22 +96,31 @@ def dielectric_transmittance(cos_i, eta):
 
     Arguments as in `fresnel_dielectric`.
     """
-    c, g, _, _, inverse_s, inverse_p = _dielectric(cos_i, eta)
+    c, g, _, _, sum_s, sum_p = _dielectric(cos_i, 1.0, eta)
+    inverse = 1.0 / (sum_s * sum_p)
+    inverse_s = sum_p * inverse
+    inverse_p = sum_s * inverse
     return min(1.0, 2.0 * c * g * (inverse_s * inverse_s + eta * eta * inverse_p * inverse_p))
 
 
 @scalar
-def _dielectric(cos_i, eta):
-    """The cosine, g, g^2 or less than 0 where all is reflected, m, 1 / (c + g) and 1 / (eta^2 c + g)."""
-    c = max(cos_i, _LEAST_COSINE)
+def _dielectric(c, square, eta):
+    """The cosine, g, g^2 or less than 0 where all is reflected, m, c + g and eta^2 c + g.
+
+    All but m are times the length, or squared length, of a normal whose squared length is ``square``.
+    """
+    c = max(c, _LEAST_COSINE)
     m, rest = _square_minus_one(eta)
-    g2 = fma(c, c, m) + rest
+    g2 = fma(c, c, m * square) + rest * square
     g = math.sqrt(max(0.0, g2))
-    sum_s = c + g
-    sum_p = eta * eta * c + g
-    # One division for both polarisations.
-    inverse = 1.0 / (sum_s * sum_p)
-    return c, g, g2, m, sum_p * inverse, sum_s * inverse
+    return c, g, g2, m, c + g, eta * eta * c + g
+
+
+@scalar
+def _brewster(c, g2, square, eta):
+    """(n^2 + 1) c^2 - 1, which is also (n^2 + 1) g^2 - n^4; times ``square`` as in `_dielectric`."""
+    eta2 = eta * eta
+    return (eta2 + 1.0) * (g2 if eta < 1.0 else c * c) - (eta2 * eta2 if eta < 1.0 else 1.0) * square
 
 
 @scalar

@@ -24,6 +24,18 @@ def smith_g1(cos_w, alpha):
 
 
 @scalar
+def smith_g1_scaled(height, scale, alpha):
+    """`smith_g1` of the direction whose cosine is ``height / scale``, and ``1 / scale``: one division for both.
+
+    ``scale`` and ``alpha`` are positive.
+    """
+    above = max(0.0, height)
+    total = above + math.sqrt(above * above + alpha * alpha * (scale * scale - above * above))
+    inverse = 1.0 / (scale * total)
+    return 2.0 * above * scale * inverse, total * inverse
+
+
+@scalar
 def sample_visible_normal(x, y, z, alpha, cosine, sine, u):
     """A microfacet normal as seen from the unit direction (x, y, z), z > 0.
 
@@ -32,18 +44,21 @@ def sample_visible_normal(x, y, z, alpha, cosine, sine, u):
     Benyoub 2023): ``cosine`` and ``sine`` are those of a uniform azimuth, and ``u``,
     uniform in [0, 1), sets the height on the cap.
     """
-    sx = alpha * x
-    sy = alpha * y
-    inverse = 1.0 / math.sqrt(sx * sx + sy * sy + z * z)
-    sx *= inverse
-    sy *= inverse
-    sz = z * inverse
-    # The height of the cap's point plus sz, formed without subtracting: it is the z of the
-    # half vector, whose smallness decides the tails of narrow distributions.
-    hz = (1.0 - u) * (1.0 + sz)
-    cap_z = hz - sz
-    ring = math.sqrt(max(0.0, 1.0 - cap_z * cap_z))
-    hx = alpha * (ring * cosine + sx)
-    hy = alpha * (ring * sine + sy)
+    hx, hy, hz = sample_visible_facet(x, y, z, alpha, cosine, sine, u)
     inverse = 1.0 / math.sqrt(hx * hx + hy * hy + hz * hz)
     return hx * inverse, hy * inverse, hz * inverse
+
+
+@scalar
+def sample_visible_facet(x, y, z, alpha, cosine, sine, u):
+    """As `sample_visible_normal`, but the normal is left at a length that needs no division to find."""
+    sx = alpha * x
+    sy = alpha * y
+    square = sx * sx + sy * sy + z * z
+    length = math.sqrt(square)
+    # The height of the cap's point plus z, formed without subtracting: it is the z of the
+    # half vector, whose smallness decides the tails of narrow distributions.
+    hz = (1.0 - u) * (length + z)
+    cap_z = hz - z
+    ring = math.sqrt(max(0.0, square - cap_z * cap_z))
+    return alpha * (ring * cosine + sx), alpha * (ring * sine + sy), hz

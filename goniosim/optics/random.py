@@ -8,7 +8,7 @@ same seed gives the same bits for any number of threads and any order of work.
 import numpy as np
 
 from .._jit import scalar
-from .elementary import bits_to_float
+from .elementary import bits_to_float, float_to_bits, sincos_octants
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _M1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -18,6 +18,9 @@ _S27 = np.uint64(27)
 _S31 = np.uint64(31)
 _S12 = np.uint64(12)
 _ONE = np.uint64(0x3FF0000000000000)
+_BIT = np.uint64(1)
+_S1 = np.uint64(1)
+_S63 = np.uint64(63)
 
 
 @scalar
@@ -38,3 +41,18 @@ def derive_key(key, number):
 def uniform(key, counter):
     """The ``counter``-th random number of ``key``: uniform in [0, 1), a multiple of 2^-52."""
     return bits_to_float((mix(key + np.uint64(counter) * _GOLDEN) >> _S12) | _ONE) - 1.0
+
+
+@scalar
+def random_sincos(key, counter):
+    """Sine and cosine of the ``counter``-th random azimuth of ``key``.
+
+    52 bits are the angle within a quarter turn about an axis, two more the axis.
+    """
+    bits = mix(key + np.uint64(counter) * _GOLDEN)
+    s, c = sincos_octants(bits_to_float((bits >> _S12) | _ONE) - 1.5)
+    swap = (bits & _BIT) != 0
+    opposite = ((bits >> _S1) & _BIT) << _S63
+    sine = c if swap else s
+    cosine = s if swap else c
+    return bits_to_float(float_to_bits(sine) ^ opposite), bits_to_float(float_to_bits(cosine) ^ opposite)

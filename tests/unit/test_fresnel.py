@@ -15,6 +15,7 @@ from goniosim.optics.fresnel import (
     dielectric_transmittance,
     fresnel_conductor,
     fresnel_dielectric,
+    reflects,
 )
 from goniosim.optics.refraction import refracted_cosine, refraction_shift
 from reference import exact_fresnel
@@ -30,6 +31,13 @@ def _dielectric(cosines, eta, found):
     for i in range(cosines.shape[0]):
         found[0, i], found[2, i] = fresnel_dielectric(cosines[i], eta)
         found[1, i] = dielectric_transmittance(cosines[i], eta)
+
+
+@kernel
+def _reflects(u, cosines, length, eta, coin, found):
+    for i in range(cosines.shape[0]):
+        coin[i], g = reflects(u[i], length * cosines[i], length * length, eta)
+        found[i] = g / (length * eta)
 
 
 @kernel
@@ -64,6 +72,28 @@ def test_dielectric(eta):
         assert abs(Decimal(found[0, i]) - reflectance) < 1e-13
         assert error(found[1, i], transmittance) < 1e-13
         assert abs(Decimal(found[2, i]) - cos_t) < 1e-13
+
+
+@pytest.mark.parametrize("length", [1.0, 0.7, 1e-9])
+@pytest.mark.parametrize("eta", ETAS)
+def test_the_coin_falls_with_the_reflectance_for_normals_of_any_length(eta, length):
+    """Heads just below the reflectance and tails just above it; the cosine of the refracted ray to 1e-13 beside."""
+    cosines = COSINES if eta >= 1.0 else COSINES[math.cos(math.asin(eta)) + 1e-9 < COSINES]
+    exact = np.empty((3, len(cosines)))
+    _dielectric(cosines, eta, exact)
+    coin, cos_t = np.empty(len(cosines), bool), np.empty(len(cosines))
+    _reflects(exact[0] - 1e-13, cosines, length, eta, coin, cos_t)
+    assert coin[exact[0] > 1e-13].all()
+    _reflects(exact[0] + 1e-13, cosines, length, eta, coin, cos_t)
+    assert not coin.any()
+    assert np.abs(cos_t**2 - exact[2] ** 2).max() < 1e-13 * max(1.0, 1.0 / eta**2)
+
+
+def test_the_coin_always_reflects_where_no_light_gets_through():
+    cosines = np.array([0.0, 0.1, 0.7])
+    coin, cos_t = np.empty(3, bool), np.empty(3)
+    _reflects(np.full(3, 1.0 - 2.0**-52), cosines, 0.5, 1.0 / 1.5, coin, cos_t)
+    assert coin.all() and (cos_t == 0.0).all()
 
 
 @pytest.mark.parametrize("kappa", [0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.3, 1.0, 10.0, 1e3, 1e5, 1e6])

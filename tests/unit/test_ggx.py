@@ -8,7 +8,7 @@ from scipy import integrate, stats
 
 from goniosim._jit import kernel
 from goniosim.optics.elementary import sincos_turns
-from goniosim.optics.ggx import ggx_density, sample_visible_normal, smith_g1
+from goniosim.optics.ggx import ggx_density, sample_visible_normal, smith_g1, smith_g1_scaled
 from goniosim.optics.random import uniform
 
 
@@ -20,6 +20,11 @@ def _density(sin2, cosine, alpha):
 @kernel
 def _g1(cosine, alpha):
     return smith_g1(cosine, alpha)
+
+
+@kernel
+def _g1_scaled(height, scale, alpha):
+    return smith_g1_scaled(height, scale, alpha)
 
 
 @kernel
@@ -40,6 +45,15 @@ def test_ggx_is_normalised(alpha):
         return _density((tan * cosine) ** 2, cosine, alpha) * cosine**4 * 2 * math.pi * tan * alpha
 
     assert integrate.quad(integrand, 0, np.inf)[0] == pytest.approx(1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("alpha", [1e-6, 0.2, 1.0, 3.0])
+@pytest.mark.parametrize("scale", [1.0, 0.3, 1e-9])
+def test_masking_of_a_scaled_direction(alpha, scale):
+    for cosine in (1.0, 0.5, 1e-9, 0.0, -0.4, -1.0):
+        masking, inverse = _g1_scaled(cosine * scale, scale, alpha)
+        assert masking == pytest.approx(_g1(cosine, alpha), rel=1e-14)
+        assert inverse == pytest.approx(1.0 / scale, rel=1e-14)
 
 
 @pytest.mark.parametrize("alpha", [0.05, 0.5, 1.0])

@@ -5,13 +5,19 @@ from scipy import stats
 
 from goniosim._jit import kernel
 from goniosim.engine.unit import unit_key
-from goniosim.optics.random import derive_key, uniform
+from goniosim.optics.random import derive_key, random_sincos, uniform
 
 
 @kernel
 def _draw(key, out):
     for i in range(out.shape[0]):
         out[i] = uniform(key, i)
+
+
+@kernel
+def _draw_azimuths(key, sine, cosine):
+    for i in range(sine.shape[0]):
+        sine[i], cosine[i] = random_sincos(key, i)
 
 
 @kernel
@@ -33,6 +39,18 @@ def test_uniform_in_one_and_three_dimensions():
     assert stats.chisquare(counts).pvalue > 1e-6
     box = (u.reshape(-1, 3) * 10).astype(int) @ [100, 10, 1]
     assert stats.chisquare(np.bincount(box, minlength=1000)).pvalue > 1e-6
+
+
+def test_azimuths_are_uniform_on_the_circle():
+    """Chi-square over 1024 arcs and over 32^2 pairs of neighbours; false alarm 2e-6 in all."""
+    sine, cosine = np.empty((2, 2_000_000))
+    _draw_azimuths(np.uint64(11), sine, cosine)
+    assert np.abs(sine**2 + cosine**2 - 1.0).max() < 4e-15
+    turns = (np.arctan2(sine, cosine) / (2.0 * np.pi)) % 1.0
+    arcs = np.minimum((turns * 1024).astype(int), 1023)
+    assert stats.chisquare(np.bincount(arcs, minlength=1024)).pvalue > 1e-6
+    pairs = arcs[::2] // 32 * 32 + arcs[1::2] // 32
+    assert stats.chisquare(np.bincount(pairs, minlength=1024)).pvalue > 1e-6
 
 
 def test_children_of_a_key_are_uncorrelated():

@@ -6,7 +6,7 @@ from ...optics.ggx import smith_g1
 from ...optics.lambert import sample_cosine
 from ..layout import WEIGHT, X, Y, Z
 from ..stages import LAMBERT, ROUGH_CONDUCTOR
-from ..stages.facets import sample_facets
+from .facets import draw_facets
 from ..stages.lambert import RHO
 from ..stages.smooth_conductor import ETA, KAPPA
 from .layout import (
@@ -37,7 +37,7 @@ def meet_base(kind, batch, n, alpha, spectral, scratch):
     elif kind == ROUGH_CONDUCTOR:
         fx, fy, fz, cosines = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], scratch[COSINE]
         facet_numbers(scratch[POINT_U], scratch[POINT_V], n, 0, BASE, fx, fy, fz)
-        sample_facets(x, y, z, n, alpha, fx, fy, fz, cosines)
+        draw_facets(x, y, z, n, alpha, fx, fy, fz, cosines)
         _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, ox, oy, oz, gain)
         _colour(batch, n, spectral, cosines)
     else:

@@ -5,7 +5,7 @@ from ...optics.fresnel import fresnel_dielectric
 from ...optics.ggx import smith_g1
 from ..layout import X, Y, Z
 from ..stages import ROUGH_DIELECTRIC
-from ..stages.facets import sample_facets
+from .facets import draw_facets
 from .layout import (
     BACK_GAIN,
     BACK_X,
@@ -29,7 +29,7 @@ def meet_dielectric(kind, batch, n, alpha, eta, scratch):
     """Choose facets of a rough interface, and find what they reflect; `facet_numbers` has drawn."""
     if kind == ROUGH_DIELECTRIC:
         cosines = scratch[COSINE]
-        sample_facets(
+        draw_facets(
             batch[X], batch[Y], batch[Z], n, alpha, scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], cosines
         )
         _fresnel(cosines, n, eta, scratch[REFLECTANCE], scratch[COSINE_BEYOND])

@@ -1,8 +1,8 @@
 """Lambertian base: reflects rho, in a direction that has forgotten where the ray came from."""
 
 from ..._jit import stage
-from ...optics.lambert import sample_cosine
-from ...optics.random import derive_key, uniform
+from ...optics.lambert import cosine_direction
+from ...optics.random import derive_key, random_sincos, uniform
 from ..layout import ABSORBED_BASE, GAIN, TRANSMITTED, WEIGHT, X, Y, Z
 
 RHO = 0
@@ -34,6 +34,7 @@ def _sample(x, y, z, n, key, gain, transmitted):
     height_key = derive_key(key, 0)
     azimuth_key = derive_key(key, 1)
     for i in range(n):
-        x[i], y[i], z[i] = sample_cosine(uniform(height_key, i), uniform(azimuth_key, i))
+        sine, cosine = random_sincos(azimuth_key, i)
+        x[i], y[i], z[i] = cosine_direction(uniform(height_key, i), cosine, sine)
         gain[i] = 1.0
         transmitted[i] = 0.0

@@ -1,7 +1,7 @@
 """Perfectly smooth dielectric interface: Fresnel coin, mirror direction or Snell's law."""
 
 from ..._jit import stage
-from ...optics.fresnel import fresnel_dielectric
+from ...optics.fresnel import reflects
 from ...optics.random import derive_key, uniform
 from ..layout import GAIN, TRANSMITTED, X, Y, Z
 
@@ -26,12 +26,11 @@ def scatter(batch, n, eta, key, scratch):
     inverse_eta = 1.0 / eta
     for i in range(n):
         cosine = z[i]
-        reflectance, cos_t = fresnel_dielectric(cosine, eta)
-        reflect = uniform(coin_key, i) < reflectance
+        reflect, g = reflects(uniform(coin_key, i), cosine, 1.0, eta)
         # The view vector at the next interface keeps its horizontal direction, as the ray does.
         scale = 1.0 if reflect else inverse_eta
         x[i] *= scale
         y[i] *= scale
-        z[i] = cosine if reflect else cos_t
+        z[i] = cosine if reflect else g * inverse_eta
         gain[i] = 1.0
         transmitted[i] = 0.0 if reflect else 1.0

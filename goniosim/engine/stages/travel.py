@@ -10,15 +10,21 @@ ROULETTE = 3
 
 
 @stage
-def absorb(batch, n, tau, path, ledger):
+def absorb(batch, n, tau, path, fraction, ledger):
     """Attenuate ``n`` rays that have crossed a medium of optical depths ``tau[channel]``.
 
-    ``path`` is overwritten: the lengths of the ways, in units of the layer's depth.
+    ``path`` and ``fraction`` are overwritten: the lengths of the ways, in units of the layer's depth, and
+    what was left of the last channel that was attenuated.
     """
     _path_lengths(batch[Z], n, path)
+    known = 0.0
     for c in range(tau.shape[0]):
         if tau[c] > 0.0:
-            ledger[ABSORBED_MEDIA, c] += _absorb_channel(batch[WEIGHT + c], n, tau[c], path)
+            # Neighbouring channels are often alike, and the exponential is what takes time.
+            if tau[c] != known:
+                _attenuations(n, tau[c], path, fraction)
+                known = tau[c]
+            ledger[ABSORBED_MEDIA, c] += _rescale(batch[WEIGHT + c], n, fraction)
 
 
 @stage
@@ -28,14 +34,9 @@ def _path_lengths(cosines, n, path):
 
 
 @stage
-def _absorb_channel(weight, n, tau, path):
-    absorbed = 0.0
+def _attenuations(n, tau, path, fraction):
     for i in range(n):
-        before = weight[i]
-        after = before * transmittance(tau, path[i])
-        weight[i] = after
-        absorbed += before - after
-    return absorbed
+        fraction[i] = transmittance(tau, path[i])
 
 
 @stage
