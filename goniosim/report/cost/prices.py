@@ -48,10 +48,9 @@ def price(law, error):
         return None
     rays, unknown = (values[lit] for values in law.rays(error))
     fixed, growing = law.fixed[:, lit], law.per_ray[:, lit] * rays
-    tracing = (fixed + growing).sum(axis=1)
-    total = law.overhead + tracing
+    total = law.overhead + (fixed + growing).sum(axis=1)
     # The directions may be wrong all alike.
-    off = np.hypot((growing[1] * unknown).sum(), law.clock * tracing[1])
+    off = np.hypot((growing[1] * unknown).sum(), law.clock * total[1])
     return Price(
         error=error,
         seconds=float(total[0]),

@@ -115,7 +115,9 @@ def _effect_lines(made):
         [name, text.with_error(effect.ratio, effect.uncertainty), effect.without]
         for name, effect in made.effects.items()
     ]
-    head = "What effects add: time per independent path, over that of the same scene"
+    head = (
+        "What effects add: time per independent path, over that of the same scene (below 1: without, paths are longer)"
+    )
     return [head, *text.table(["effect", "times", "without it"], rows)]
 
 
