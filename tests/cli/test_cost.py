@@ -112,3 +112,12 @@ def test_what_is_no_time_is_refused(folder, goniosim, written):
     code, _, err = goniosim("cost", "scene.yaml", "--max-time", written)
     assert code == 2
     assert "is not a time such as 90s, 10m or 1h" in err
+
+
+def test_without_memory_for_more_cells_or_directions_the_rest_is_told(folder, goniosim, monkeypatch):
+    monkeypatch.setattr("goniosim.report.cost.price_list.shortage", lambda scene: "too little")
+    code, out, _ = goniosim("cost", "scene.yaml", *QUICK, "--json")
+    assert code == 0
+    data = json.loads(out)
+    assert data["limits"]["cells"] == data["limits"]["directions"] == {}
+    assert data["components"]

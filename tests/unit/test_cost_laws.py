@@ -77,3 +77,17 @@ def test_a_black_component_has_no_price_and_a_black_direction_none_either():
     half = np.array([2.0, 0.0])
     lit = price(fit(ladder(0.5), NAME, half, True), 0.01)
     assert lit.cpu_seconds == pytest.approx(0.3 + 0.05 + 1e-7 * 1e6)
+
+
+def test_a_run_that_met_no_light_is_left_out():
+    rungs = ladder(0.5)
+    rungs[0].noise[NAME][1] = 0.0
+    law = fit(rungs, NAME, NORM, True)
+    assert law.rungs == 3
+    assert law.error(1e6) == pytest.approx([0.01, 0.005])
+
+
+def test_a_single_run_makes_a_law_as_well():
+    law = fit(ladder(0.5, rays=(1e4,)), NAME, NORM, False)
+    assert (law.slope, law.slope_error) == (0.5, 0.0)
+    assert law.time(2e4)[1] == pytest.approx(2.0 * (0.05 + 1e-3))

@@ -89,12 +89,14 @@ def fit(rungs, component, norm, independent):
     -------
     Law
     """
-    x = np.log([rung.rays.mean() for rung in rungs])
     noise = np.array([rung.noise[component] for rung in rungs])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        y = np.log(np.where(noise > 0.0, noise, np.nan) / np.where(norm > 0.0, norm, np.nan))
-    lit = np.isfinite(y).all(axis=0)
-    level = np.where(lit, np.where(lit, y, 0.0).mean(axis=0), np.nan)
+    lit = (norm > 0.0) & (noise[-1] > 0.0)
+    # A run that met no light in some direction tells nothing of it.
+    seen = (noise[:, lit] > 0.0).all(axis=1)
+    rungs, noise = [rung for rung, told in zip(rungs, seen, strict=True) if told], noise[seen]
+    x = np.log([rung.rays.mean() for rung in rungs])
+    y = np.log(np.where(lit, noise, 1.0) / np.where(lit, norm, 1.0))
+    level = np.where(lit, y.mean(axis=0), np.nan)
     middle, spread = x.mean(), float(np.sqrt(((x - x.mean()) ** 2).sum()))
     falls = -((x - middle) @ (y - level)[:, lit]) / spread**2 if spread > 0.0 and not independent else np.zeros(0)
     slope = float(falls.mean()) if len(falls) else INDEPENDENT
@@ -128,7 +130,9 @@ def _times(rungs, rays):
     weight = (1.0 / totals)[..., None]
     rays = rays[:, None, None]
     mean = (weight * rays).sum(axis=0) / weight.sum(axis=0)
-    grows = (weight * (rays - mean) * seconds).sum(axis=0) / (weight * (rays - mean) ** 2).sum(axis=0)
+    spread = (weight * (rays - mean) ** 2).sum(axis=0)
+    # A single run: all of it is taken to grow.
+    grows = (weight * (rays - mean) * seconds).sum(axis=0) / spread if len(rungs) > 1 else seconds[0] / rays[0]
     fixed = (weight * (seconds - grows * rays)).sum(axis=0) / weight.sum(axis=0)
     # It cannot be less than nothing, or more than the shortest run took.
     fixed = np.clip(fixed, 0.0, seconds.min(axis=0))

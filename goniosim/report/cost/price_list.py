@@ -1,11 +1,12 @@
 """The whole price list of a scene, measured within a given time."""
 
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from ...cores import granted_threads
-from ...engine import threads_of
+from ...engine import shortage, threads_of
 from .cells import finer_scene, lost_to_cells
 from .directions import dense_scene, lost_between
 from .effects import added
@@ -101,14 +102,10 @@ def price_list(scene, max_seconds, models=False, say=lambda message: None):
     effects = added(scene, PART * max_seconds)
     say("sub-cells")
     subcells = subcell_errors(scene)
-    sampled = bool(best[ESTIMATORS[0]].noise)
-    cells = directions = {}
-    if sampled:
-        say("cells")
-        fine = finer_scene(scene)
-        cells = {} if fine is None else lost_to_cells(_within(fine, best, PART * max_seconds))
-        say("directions")
-        directions = lost_between(scene, _within(dense_scene(scene), best, PART * max_seconds))
+    say("cells")
+    cells = _limit(finer_scene(scene), best, PART * max_seconds, lost_to_cells)
+    say("directions")
+    directions = _limit(dense_scene(scene), best, PART * max_seconds, partial(lost_between, scene))
     return PriceList(
         scene=scene,
         threads=granted_threads(threads_of(scene)),
@@ -137,10 +134,15 @@ def _components(ladders, points):
     return components
 
 
-def _within(scene, best, seconds):
-    """A result of another scene of the same material, with as many rays as some seconds allow."""
+def _limit(scene, best, seconds, look):
+    """What ``look`` tells of a result of another scene, with as many rays as some seconds allow.
+
+    Nothing where there is no such scene, where nothing is sampled, or where memory is short.
+    """
     estimator = ESTIMATORS[0]
     rung = best[estimator]
+    if scene is None or not rung.noise or shortage(scene):
+        return {}
     per_ray = rung.seconds.sum() / rung.rays.sum()
     rays = seconds / (per_ray * len(scene.incident.theta_deg))
-    return run(scene, estimator, max(FEWEST_RAYS, int(rays))).result
+    return look(run(scene, estimator, max(FEWEST_RAYS, int(rays))).result)

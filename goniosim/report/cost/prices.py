@@ -6,6 +6,8 @@ import numpy as np
 
 # Relative errors of a slice, from easy to hard.
 ERRORS = (0.1, 0.03, 0.01, 0.003, 0.001)
+# Logarithm of a factor at which nothing is known any more.
+MOST_UNKNOWN = 7.0
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,7 @@ class Price:
 
 
 def price(law, error):
-    """What an error costs; None where the component is black.
+    """What an error costs; None where the component is black, or all of it noise.
 
     Parameters
     ----------
@@ -56,7 +58,7 @@ def price(law, error):
         seconds=float(total[0]),
         cpu_seconds=float(total[1]),
         measured=bool(rays.max() <= law.most),
-        uncertainty=float(np.expm1(off / total[1])),
+        uncertainty=float(np.expm1(min(off / total[1], MOST_UNKNOWN))),
     )
 
 

@@ -65,7 +65,7 @@ def as_data(made):
 
 def _component_lines(name, component):
     if not any(component.prices.values()):
-        return [f"{name}: black; there is nothing to be sampled"]
+        return [f"{name}: no light that is told from noise"]
     header = ["slice error"]
     for each in ESTIMATORS:
         header += [f"{each}\ntime", "CPU\ntime", ""]
