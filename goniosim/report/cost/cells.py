@@ -4,6 +4,7 @@ import numpy as np
 
 from ...scene.model import MAX_CELLS
 from .norms import difference
+from .runs import sampled
 
 # Fine cells along each side of a cell; and of a cell of twice the width.
 FINER = 2
@@ -50,8 +51,8 @@ def lost_to_cells(result):
         ``uncertainty``; nothing where light leaves in one exact direction, for which no cell is fine enough.
     """
     found = {}
-    for name, component in result.components.items():
-        if component.hits is None or component.contains_delta:
+    for name, component in sampled(result).items():
+        if component.contains_delta:
             continue
         rows, columns = component.energy.shape[2:]
         sides = [side for side in (FINER, 2 * FINER) if rows % side == columns % side == 0]

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .norms import difference
+from .runs import sampled
 
 COUNTS = (7, 15, 30)
 # Gaps between neighbours that are looked at for each number of directions.
@@ -64,8 +65,7 @@ def lost_between(scene, result):
             {"directions": count} | max((_off(component, result.cells, gap) for gap in several), key=_error)
             for count, several in places.items()
         ]
-        for name, component in result.components.items()
-        if component.hits is not None
+        for name, component in sampled(result).items()
     }
 
 

@@ -46,6 +46,8 @@ def added(scene, seconds):
     dict of str to Added
         By effect; only those that the scene has and can be without.
     """
+    # Of independent paths alone a single one has a price.
+    scene = scene.model_copy(update={"simulation": scene.simulation.model_copy(update={"estimator": "analog"})})
     variants = without_effects(scene)
     if not variants:
         return {}

@@ -5,6 +5,7 @@ from ...compare.measures import rmse
 from ...compare.variants import check_request
 from ...integration import Pool
 from .norms import norm_of
+from .runs import sampled
 
 # As in `goniosim compare`.
 SUBCELLS = 5
@@ -27,8 +28,8 @@ def model_points(result):
         compared = compare_material(result, check_request(), SUBCELLS, pool).compared
     found = {}
     for each in compared:
-        component = result.components.get(each.component)
-        if component is None or component.hits is None or each.variant.options:
+        component = sampled(result).get(each.component)
+        if component is None or each.variant.options:
             continue
         norm = float((norm_of(component, result.cells) ** 2).mean() ** 0.5)
         if norm > 0.0:

@@ -68,15 +68,20 @@ def run(scene, estimator, rays, seed=None, threads=None):
     seconds, cpu_seconds = (
         np.full(directions, last / directions) for last in (result.cost.seconds[-1], result.cost.cpu_seconds[-1])
     )
-    sampled = {name: component for name, component in result.components.items() if component.hits is not None}
+    found = sampled(result)
     return Run(
         rays=result.rays.astype(float),
         seconds=seconds,
         cpu_seconds=cpu_seconds,
         overhead=max(elapsed - seconds.sum(), 0.0),
         cpu_overhead=max(cpu_elapsed - cpu_seconds.sum(), 0.0),
-        noise={name: noise_of(component, result.cells) for name, component in sampled.items()},
-        norm={name: norm_of(component, result.cells) for name, component in sampled.items()},
-        estimators={name: ["analog"] * directions for name in sampled},
+        noise={name: noise_of(component, result.cells) for name, component in found.items()},
+        norm={name: norm_of(component, result.cells) for name, component in found.items()},
+        estimators={name: ["analog"] * directions for name in found},
         result=result,
     )
+
+
+def sampled(result):
+    """The components of a result that paths made: all but the direct reflection, which is integrated."""
+    return {name: component for name, component in result.components.items() if name != "reflection/direct"}
