@@ -12,7 +12,7 @@ PAPER := out/paper
 # Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.
 WORKERS := -n auto --maxprocesses 4 --dist loadfile
 
-.PHONY: demo install lint test test-all bench paper paper-report clean
+.PHONY: demo install lint test test-all bench headline accuracy paper paper-report clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -42,6 +42,14 @@ test-all: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py
+
+# Time per slice for the noise of 160 million independent paths, over the 60 materials.
+headline: $(STAMP)
+	$(BIN)/python benchmarks/headline.py
+
+# docs/accuracy_and_time.md, its tables and pictures; some minutes, on an idle machine.
+accuracy: $(STAMP)
+	$(BIN)/python -m benchmarks.accuracy_and_time
 
 # Files that hold these rays or more are left alone; with more RAYS all are simulated anew. For fewer, remove the folder.
 paper: $(STAMP)

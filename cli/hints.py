@@ -9,6 +9,7 @@ import click
 COMMANDS = {
     "simulate": "run render sim trace measure start go",
     "check": "validate lint verify test predict estimate dryrun",
+    "cost": "price prices pricelist accuracy budget",
     "info": "ls list inspect describe stat status summary print cat",
     "plot": "view show display draw figure figures picture image open",
     "compare": "evaluate eval diff benchmark rank error errors report",

@@ -4,6 +4,7 @@ import click
 
 from .check import check
 from .compare import compare
+from .cost import cost
 from .info import info
 from .init import init
 from .models import models
@@ -61,5 +62,5 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (init, simulate, check, info, plot, compare, models, schema, versions):
+for command in (init, simulate, check, cost, info, plot, compare, models, schema, versions):
     main.add_command(command)
