@@ -41,13 +41,9 @@ def faint_weights(plan):
         For every incident direction and queue: that of the rays that arrive at interface k from above
         has the number 2 k, from below 2 k + 1.
     """
-    return np.maximum(FAINT * usual_weights(plan), DARKEST)
-
-
-def usual_weights(plan):
-    """Weights that are usual in the analog walk; arguments and shape as of `faint_weights`."""
     workspace = Workspace(plan)
-    return np.stack([_usual(plan, workspace, direction) for direction in range(len(plan.theta_deg))])
+    usual = np.stack([_usual(plan, workspace, direction) for direction in range(len(plan.theta_deg))])
+    return np.maximum(FAINT * usual, DARKEST)
 
 
 def _usual(plan, workspace, direction):
@@ -75,12 +71,12 @@ def _first_batches(plan, workspace, direction):
         if q in waiting and (filled[q] >= BATCH or (workspace.state[LEFT] == 0 and filled[q] > 0)):
             waiting.remove(q)
             batch = queues[q, :, : min(BATCH, filled[q])]
-            yield q, _after_medium(plan, q, batch)
+            yield q, after_medium(plan, q, batch)
         if workspace.advance(direction, key, 1, ledger, cells):
             return
 
 
-def _after_medium(plan, q, batch):
+def after_medium(plan, q, batch):
     """Weights of the rays of a queue, less what the medium absorbs that they have just crossed."""
     tau = plan.taus[q // 2 - 1 if q % 2 == 0 else q // 2]
     path = 1.0 / np.maximum(batch[Z], DARKEST)

@@ -4,17 +4,18 @@ import math
 
 import numpy as np
 
-from ..faint import usual_weights
-from ..layout import WEIGHT
-from ..splitting.lobes import facets_per_arrival
+from ..splitting.lobes import MOST_FACETS, facets_per_arrival
+from ..splitting.layout import PHASES
+from ..splitting.usual import usual_weights
 from ..splitting.workspace import Workspace, shapes
-from ..unit import BATCH, DARKEST, pilot_key
-from ..walk import ABOVE
+from ..unit import DARKEST
 
 # A ray that is fainter than this, relative to what is usual at its place, plays Russian roulette. Where inner
 # interfaces branch, their dim branches carry what is rare: those are followed further.
-_FAINT = 1.0
-_FAINT_BRANCH = 0.1
+_FAINT = 0.5
+_FAINT_BRANCH = 0.2
+# Facets for each one of the other way out.
+_MOST_BESIDE = 8
 # Bytes of a number.
 _NUMBER = 8
 
@@ -51,17 +52,18 @@ class Split:
         self.facets = np.zeros((len(directions), 2), np.int64)
         for side in sides:
             self.facets[:, side] = [facets_per_arrival(plan, direction, side) for direction in directions]
+        # Or paths would be too few for the way out that tells one thing of each.
+        fewest = np.min(self.facets, axis=1, where=self.facets > 0, initial=MOST_FACETS)
+        self.facets = np.minimum(self.facets, _MOST_BESIDE * fewest[:, None])
         self.scales = None
 
     def prepare(self):
         """Find out which weights are usual; the pilot's keys are its own."""
         plan = self.plan
-        usual = usual_weights(plan)
         faint = _FAINT if len(plan.kinds) < 3 else _FAINT_BRANCH
-        self.scales = np.ones_like(usual)
-        workspace = self.workspace()
-        entered = [_entered(workspace, direction) for direction in range(len(usual))]
-        self.scales = 1.0 / np.maximum(faint * np.array(entered)[:, None, None] * usual, DARKEST)
+        shape = (len(plan.theta_deg), PHASES * 2 * len(plan.kinds), plan.n_distinct)
+        self.scales = np.full(shape, 1.0 / DARKEST)
+        self.scales = 1.0 / np.maximum(faint * usual_weights(plan, self.workspace()), DARKEST)
 
     @property
     def memory(self):
@@ -73,13 +75,3 @@ class Split:
         """Arrays of one thread, with ``run``."""
         return Workspace(self.plan, self.slots, self.facets, self.scales)
 
-
-def _entered(workspace, direction):
-    """Mean weight of the rays that enter the stack, as far as any do: no coin has been tossed for them."""
-    if len(workspace.plan.kinds) == 1:
-        return 1.0
-    workspace.begin(BATCH)
-    workspace.advance(direction, pilot_key(direction), 1)
-    queue = 2 + ABOVE
-    weights = workspace.queues[queue, WEIGHT, : workspace.filled[queue]]
-    return weights.mean() if len(weights) else 1.0

@@ -56,25 +56,21 @@ def leave(way, batch, n, share, free, key, channels, scratch, sources, cells):
     x, y, z, amount = scratch[EXIT_X], scratch[EXIT_Y], scratch[EXIT_Z], scratch[AMOUNT]
     gain = scratch[THROUGH_GAIN]
     m = _close_up(scratch[THROUGH_X], scratch[THROUGH_Y], scratch[THROUGH_Z], gain, n, share, x, y, z, amount, sources)
-    if free and rows_are_rings:
-        cells_of(parametrization, x, y, z, m, rows, 1, light, places)
-        _choose_slot(batch, sources, m, channels, slots[way], rows, places)
-        _add(rings, places, sources, amount, batch, m, channels)
-    elif free:
-        radius, turn = scratch[RADIUS], scratch[TURN]
-        _radii(x, y, m, derive_key(key, _AZIMUTH_KEY), radius, turn, amount)
-        for number in range(AZIMUTHS):
-            _spin(radius, turn, m, number, (0.5 if folded else 1.0) / AZIMUTHS, x, y)
-            cells_of(parametrization, x, y, z, m, rows, columns, light, places)
-            _choose_slot(batch, sources, m, channels, slots[way], rows * columns, places)
-            _add(histogram, places, sources, amount, batch, m, channels)
-    else:
-        if folded:
-            _fold(y, m)
+    ring = free and rows_are_rings
+    spin = free and not rows_are_rings
+    table = rings if ring else histogram
+    columns = 1 if ring else columns
+    if spin:
+        _radii(x, y, m, derive_key(key, _AZIMUTH_KEY), scratch[RADIUS], scratch[TURN], amount)
+    elif folded:
+        _fold(y, m)
+    for number in range(AZIMUTHS if spin else 1):
+        if spin:
+            _spin(scratch[RADIUS], scratch[TURN], m, number, (0.5 if folded else 1.0) / AZIMUTHS, x, y)
         cells_of(parametrization, x, y, z, m, rows, columns, light, places)
         _choose_slot(batch, sources, m, channels, slots[way], rows * columns, places)
-        _add(histogram, places, sources, amount, batch, m, channels)
-    return m * AZIMUTHS // _AZIMUTHS_PER_EVENT if free and not rows_are_rings else 0
+        _add(table, places, sources, amount, batch, m, channels)
+    return m * AZIMUTHS // _AZIMUTHS_PER_EVENT if spin else 0
 
 
 @stage

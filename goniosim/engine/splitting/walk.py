@@ -51,8 +51,8 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
     ----------
     stack : tuple
         Interface and medium tables of `plan.Plan.tables`.
-    scales : ndarray, shape (2 K, channels)
-        Reciprocals of the weights below which a ray is faint, by interface and side of arrival.
+    scales : ndarray, shape (queues, channels)
+        Reciprocals of the weights below which a ray is faint.
     facets : ndarray of int64, shape (2,)
         For exits upwards and downwards, the facets of an arrival; 0 where nobody looks.
     crowd : int
@@ -107,7 +107,7 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
             if absorbs[medium]:
                 absorb(batch, n, taus[medium], scratch[RADIUS], ledger)
             state[EVENTS] += n
-            if roulette(batch, n, scales[arrival], scratch[RADIUS], key, ledger):
+            if roulette(batch, n, scales[q], scratch[RADIUS], key, ledger):
                 n = close_up(batch, n, scratch[RADIUS], places)
             dimension = BASE if k == last and phase == FRESH else EXIT if k == 0 and phase == BASED else HASHED
 

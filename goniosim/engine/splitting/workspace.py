@@ -41,7 +41,7 @@ class Workspace:
         For each way out: first histogram, number of histograms (0 if nobody looks), first order.
     facets : ndarray of int64, shape (M, 2)
         Facets through which an arrival leaves.
-    scales : ndarray, shape (M, 2 K, D)
+    scales : ndarray, shape (M, queues, D)
         Reciprocals of the weights below which a ray is faint.
     """
 

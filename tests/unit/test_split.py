@@ -1,0 +1,156 @@
+"""What an estimator owes its driver, kept by the split walk; and how it spends its facets and queues."""
+
+import math
+import threading
+
+import numpy as np
+import pytest
+
+from goniosim.engine.estimators.split import Split
+from goniosim.engine.layout import DOWN, UP
+from goniosim.engine.splitting import workspace as workspaces
+from goniosim.engine.splitting.layout import LEFT
+from goniosim.engine.splitting.lobes import MOST_FACETS, facets_per_arrival
+from goniosim.engine.unit import BATCH
+from reference.replicates import keys, make_replicates, prepared
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+
+PLASTIC = [dielectric(1.5, 0.05), medium([0.05, 0.1, 0.4]), lambert([0.1, 0.6, 0.2])]
+METAL = [dielectric(1.5, 0.2), medium(0.1), conductor(1.45, [1.0, 0.01, 0.01], 0.2)]
+SLAB = [dielectric(1.5, 0.1), medium([0.05, 0.1, 0.4]), dielectric(1.0, 0.2)]
+THREE = [dielectric(1.3, 0.1), medium(0.1), dielectric(1.6, 0.2), medium(0.2), dielectric(1.2, 0.3)]
+
+
+def small(layers, theta=40.0, parametrization="classic", rows=6, columns=12, **simulation):
+    return make_scene(layers, theta, parametrization, rows, columns, **simulation)
+
+
+@pytest.mark.parametrize("layers", [PLASTIC, SLAB, THREE], ids=["plastic", "slab", "three"])
+def test_a_replicate_depends_on_its_key_alone_and_overwrites_everything(layers):
+    plan, split = prepared(Split, small(layers))
+    used, fresh = split.workspace(), split.workspace()
+    found = []
+    for workspace, key in ((used, 1), (used, 0), (fresh, 0)):
+        out = np.full((1, plan.n_slots, plan.n_distinct, plan.rows, plan.width), np.nan)
+        events = workspace.run(0, 700, keys(3, 2)[key : key + 1], out, threading.Event())
+        assert events > 700
+        assert np.isfinite(out).all() and out.min() >= 0.0
+        found.append(out)
+    assert (found[0] != found[1]).any()
+    np.testing.assert_array_equal(found[1], found[2])
+    again = prepared(Split, small(layers))[1]
+    np.testing.assert_array_equal(again.scales, split.scales)
+
+
+def test_a_stop_is_heard():
+    plan, split = prepared(Split, small(METAL))
+    stop = threading.Event()
+    stop.set()
+    out = np.empty((1, 1, plan.n_distinct, plan.rows, plan.width))
+    assert split.workspace().run(0, 1 << 22, keys(1, 1), out, stop) is None
+
+
+@pytest.mark.parametrize("layers", [METAL, SLAB, THREE], ids=["metal", "slab", "three"])
+def test_orders_add_up_to_the_whole(layers):
+    """The random numbers are the same: up to rounding."""
+    plan, split = prepared(Split, small(layers))
+    whole = make_replicates(plan, split, 600, seed=1, count=2)
+    plan, split = prepared(Split, small(layers, orders=3))
+    orders = make_replicates(plan, split, 600, seed=1, count=2)
+    first = 0
+    for number, side in enumerate(side for side in (UP, DOWN) if plan.slots[side, 1]):
+        count = plan.slots[side, 1]
+        assert orders[:, first : first + count].any(axis=(0, 2, 3, 4)).all()
+        total = orders[:, first : first + count].sum(axis=1)
+        np.testing.assert_allclose(total, whole[:, number], rtol=1e-12, atol=1e-18)
+        first += count
+
+
+def test_ways_out_can_be_asked_for_one_by_one():
+    """Paths are the same where both ways deserve as many facets: up to rounding."""
+    both = make_replicates(*prepared(Split, small(SLAB)), 600, seed=1, count=1)
+    for number, side in enumerate((UP, DOWN)):
+        plan, split = prepared(Split, small(SLAB), (side,))
+        split.facets[:, side] = prepared(Split, small(SLAB))[1].facets[:, side]
+        alone = make_replicates(plan, split, 600, seed=1, count=1)
+        assert alone.shape[1] == 1
+        assert alone.sum() == pytest.approx(both[:, number].sum(), rel=0.1)
+
+
+@pytest.mark.parametrize("layers", [METAL, PLASTIC], ids=["metal", "plastic"])
+def test_columns_do_not_matter_to_rows(layers):
+    """Odd numbers of columns are not folded. Paths are the same: up to rounding."""
+    sums = []
+    for columns in (12, 13, 1):
+        plan, split = prepared(Split, small(layers, columns=columns))
+        split.facets[:, UP] = 3
+        out = make_replicates(plan, split, 600, seed=1, count=1)[0, 0]
+        sums.append(out.sum(axis=-1) * (plan.columns / plan.width))
+    np.testing.assert_allclose(sums[1], sums[0], rtol=1e-12)
+    np.testing.assert_allclose(sums[2], sums[0], rtol=1e-12)
+
+
+def test_light_that_has_forgotten_its_azimuth_is_alike_along_rows():
+    out = make_replicates(*prepared(Split, small(PLASTIC)), 600, seed=1, count=1)
+    assert (out == out[..., :1]).all()
+
+
+def test_light_in_the_plane_of_incidence_stays_on_the_slice():
+    """Its azimuth is 180 degrees, the lower edge of a column that folding does not keep."""
+    plan, split = prepared(Split, small([dielectric(1.5), medium(0.1), dielectric(1.0)]))
+    out = make_replicates(plan, split, 512, seed=1, count=1)[0]
+    row = math.floor(40.0 / 15.0)
+    for slices in out:
+        assert slices[0, row, -1] == slices.sum() > 0.01
+
+
+def test_memory_is_told_from_shapes():
+    _, split = prepared(Split, small(THREE))
+    workspace = split.workspace()
+    arrays = [array for array in vars(workspace).values() if isinstance(array, np.ndarray) and array is not split.scales]
+    shared, own = split.memory
+    assert shared == 0
+    assert own <= sum(array.nbytes for array in arrays) < 1.05 * own
+
+
+@pytest.mark.parametrize(
+    "parametrization, alpha, least, most",
+    [("classic", 0.0, 1, 1), ("classic", 0.001, 1, 1), ("classic", 0.05, 2, MOST_FACETS), ("half", 0.001, 2, MOST_FACETS)],
+)
+def test_wide_exits_get_many_facets(parametrization, alpha, least, most):
+    plan, _ = prepared(Split, make_scene([dielectric(1.5, alpha), conductor(1.45, 1.0, 0.2)], 30.0, parametrization))
+    assert least <= facets_per_arrival(plan, 0, UP) <= most
+
+
+def test_the_narrow_way_out_is_not_left_with_few_paths():
+    plan, both = prepared(Split, make_scene([dielectric(1.5, 0.001), dielectric(1.0, 0.2)], 30.0))
+    assert facets_per_arrival(plan, 0, DOWN) == MOST_FACETS
+    assert 1 < both.facets[0, DOWN] < MOST_FACETS
+    assert Split(plan, (DOWN,)).facets.tolist() == [[0, MOST_FACETS]]
+
+
+@pytest.mark.parametrize("crowd", [-1, 1])
+def test_queues_keep_within_their_room_and_crowds_follow_one_branch(crowd, monkeypatch):
+    """Totals of both agree: within 4.5 sigma, a false alarm in 1e-5 of the cases."""
+    layers = [dielectric(1.5 if i % 2 else 1.1, 0.4 * (i % 3)) for i in range(6)] + [lambert(0.9)]
+    plan, split = prepared(Split, small(layers))
+    branched = make_replicates(plan, split, 2048, seed=1).sum(axis=(1, 2, 3, 4))
+    monkeypatch.setattr(workspaces, "CROWD", crowd)
+    crowded = make_replicates(plan, split, 2048, seed=2).sum(axis=(1, 2, 3, 4))
+    difference = branched.mean() - crowded.mean()
+    assert abs(difference) < 4.5 * np.sqrt((branched.var(ddof=1) + crowded.var(ddof=1)) / 32)
+
+
+def test_no_branching_overflows_a_queue():
+    layers = [dielectric(4.0 if i % 2 else 1.1, 0.4) for i in range(7)] + [dielectric(1.0, 0.4)]
+    plan, split = prepared(Split, small(layers))
+    # Without roulette, branches multiply.
+    split.scales[:] = 1e300
+    workspace = split.workspace()
+    workspace.begin(4 * BATCH)
+    most = 0
+    for _ in range(4000):
+        workspace.advance(0, keys(1, 1)[0], 1)
+        most = max(most, workspace.filled.max())
+    assert workspace.state[LEFT] < 4 * BATCH
+    assert workspaces.CROWD * BATCH < most <= workspace.queues.shape[2]
