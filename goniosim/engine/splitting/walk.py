@@ -36,6 +36,7 @@ from .layout import (
     THROUGH_X,
     THROUGH_Y,
     THROUGH_Z,
+    TURN,
 )
 from .numbers import facet_numbers, hashed_points, lattice_points
 from .queues import close_up, fullest, launch, pop, push
@@ -105,7 +106,7 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
             pop(queues[q], filled[q], batch, n, Z if forgets[k] else X)
             medium = k - 1 if side == ABOVE else k
             if absorbs[medium]:
-                absorb(batch, n, taus[medium], scratch[RADIUS], ledger)
+                absorb(batch, n, taus[medium], scratch[RADIUS], scratch[TURN], ledger)
             state[EVENTS] += n
             if roulette(batch, n, scales[q], scratch[RADIUS], key, ledger):
                 n = close_up(batch, n, scratch[RADIUS], places)
