@@ -1,7 +1,8 @@
 """Which weights are usual where a ray waits: what is much fainter there is not worth following.
 
-As in `goniosim.engine.faint`, but the weights of this walk differ by what its branches share: light that a clear
-interface reflects is all there is on one way out, and nothing beside what comes from below on another.
+As in `goniosim.engine.faint`, but the weights of this walk differ by what the ways out share: what a clear base reflects
+is faint, and all that there is above it. Inner interfaces do not branch in the pilot, or the rays in its queues, which no
+roulette ends, would be of ever later generations.
 """
 
 import numpy as np
@@ -63,5 +64,5 @@ def _first_batches(plan, workspace, direction):
             waiting.remove(place)
             batch = workspace.queues[q, :, max(0, filled[q] - BATCH) : filled[q]]
             yield place, after_medium(plan, q % (2 * k), batch)
-        if not waiting or workspace.advance(direction, pilot_key(direction), 1):
+        if not waiting or workspace.advance(direction, pilot_key(direction), 1, crowd=-1):
             return

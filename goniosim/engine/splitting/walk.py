@@ -41,7 +41,8 @@ from .layout import (
 from .numbers import facet_numbers, hashed_points, lattice_points
 from .queues import close_up, fullest, launch, pop, push
 
-_COIN_KEY = 1
+# Children of the stage's key: 0 and 1 are the points, 2 azimuths, 3 the roulette.
+_COIN_KEY = 4
 
 
 @kernel

@@ -83,8 +83,11 @@ class Workspace:
         self.state[LEFT] = size
         self.shifts[:] = 0.0
 
-    def advance(self, direction, key, budget):
-        """Run about ``budget`` events, and at least one stage; returns whether all paths are through."""
+    def advance(self, direction, key, budget, crowd=CROWD * BATCH):
+        """Run about ``budget`` events, and at least one stage; returns whether all paths are through.
+
+        Where the fullest queue holds more than ``crowd`` rays, inner interfaces do not branch.
+        """
         plan = self.plan
         light = plan.light[direction]
         parametrization = PARAMETRIZATIONS[plan.parametrization_name][1]
@@ -101,7 +104,6 @@ class Workspace:
             plan.width < plan.columns,
         )
         scales, facets = self.scales[direction], self.facets[direction]
-        crowd = CROWD * BATCH
         return split_walk(
             plan.tables, scales, facets, crowd, light, key, self.shifts, budget, self.space, self.ledger, cells
         )
