@@ -44,7 +44,7 @@ def albedo(result: Result, name: str | None = None) -> tuple[np.ndarray, np.ndar
 
 
 def arrived(component: Component) -> np.ndarray:
-    """Whether anything of a sampled component was seen, shape (M, C): paths may arrive with nothing left in a channel."""
+    """Whether anything of a sampled component was seen, shape (M, C); a path may have nothing left in a channel."""
     if component.hits is None:
         return component.energy.any(axis=(2, 3))
     return np.broadcast_to(component.hits.any(axis=(1, 2))[:, None], component.energy.shape[:2])

@@ -6,11 +6,12 @@ the standard error s of that mean,
 
     effective = 1 / ((n - 1) / n (s / mean)^2 + 1 / n),
 
-and is one of each channel: a cell that a hundred paths hit may hold what a single one left of a strongly absorbed channel.
+and is one of each channel: a cell that a hundred paths hit may hold what a single one left of a strongly absorbed
+channel.
 
 A mean of fewer than ten is uncertain. Ten paths of equal weight tell their standard error to 16 %, and the truth lies
-within two of them in 92 % of the cases, in 87 % with five and in 95 % with sixteen (Poisson). With unequal weights the same
-effective number says less: with exponential ones, 90 %.
+within two of them in 92 % of the cases, in 87 % with five and in 95 % with sixteen (Poisson). With unequal weights the
+same effective number says less: with exponential ones, 91 %.
 """
 
 import numpy as np

@@ -51,11 +51,13 @@ class Component:
     estimator : list of str
         For each direction what made the numbers: ``analog`` and other estimators, or `INTEGRATED`. Empty for a model.
     node_bias : ndarray, shape (M,), or None
-        What the nodes of an operator may be off by, as a norm like that of `Cost.error`. None unless some estimator has nodes.
+        What the nodes of an operator may be off by, as a norm like that of `Cost.error`. None unless some estimator
+        has nodes.
     batches : ndarray, shape (M, B, C, Rb, Kb), or None
-        Energy in blocks of cells (`goniosim.sums.block_sums`) by each of B independent batches of replicates: each is an
-        unbiased estimate, and their mean is the sum of ``energy`` over the block. Tells the errors of sums over cells
-        where paths are not independent; 0 in directions of ``analog``, whose covariance is known, and None if there are no others.
+        Energy in blocks of cells (`goniosim.sums.block_sums`) by each of B independent batches of replicates: each is
+        an unbiased estimate, and their mean is the sum of ``energy`` over the block. Tells the errors of sums over
+        cells where paths are not independent; 0 in directions of ``analog``, whose covariance is known, and None if
+        there are no others.
     contains_delta : bool
         Whether some of the energy leaves in exactly one direction (a chain of
         smooth interfaces); the BSDF of the cell that holds that direction is

@@ -4,17 +4,17 @@ A sum of g_i E_i over cells with energies E_i, standard errors s_i and given wei
 
     sum g_i^2 s_i^2  +  sum over i != j of g_i g_j cov(E_i, E_j).
 
-* `Paths`. An independent path leaves in one cell, so cov(E_i, E_j) = -E_i E_j / (N - 1) for N paths. This is exact: with it the
-  variance is that of the mean over the paths of what each brings to the sum.
-* `Batches`. Estimators whose paths share events or deposits keep sums over blocks of cells, one for each of B independent
-  batches of their replicates. The variance of a sum is that of the sums of the batches, with g replaced by its mean in
-  each block (weights s_i^2), plus sum (g_i - mean)^2 s_i^2 for what g varies within the blocks. Exact if the cells of a
-  block are independent of each other, or g does not vary; else an approximation, whose second part is small for smooth g.
-  Slices that are their own mirror images hold each number twice, and their twins count as one.
+* `Paths`. An independent path leaves in one cell, so cov(E_i, E_j) = -E_i E_j / (N - 1) for N paths. This is exact:
+  with it the variance is that of the mean over the paths of what each brings to the sum.
+* `Batches`. Estimators whose paths share events or deposits keep sums over blocks of cells, one for each of B
+  independent batches of their replicates. The variance of a sum is that of the sums of the batches, with g replaced by
+  its mean in each block (weights s_i^2), plus sum (g_i - mean)^2 s_i^2 for what g varies within the blocks. Exact if
+  the cells of a block are independent of each other, or g does not vary; else an approximation, whose second part is
+  small for smooth g. Slices that are their own mirror images hold each number twice, and their twins count as one.
 
-Squares add up too. The noise of sum E_i^2 / w_i, and so of an RMSE, needs the sum over i != j of cov(E_i, E_j)^2 / (w_i w_j). In
-batches the covariance of two cells is taken to be that of their blocks, shared out as s_i s_j; the square of an estimated
-covariance is too large on average, and the bias is taken out.
+Squares add up too. The noise of sum E_i^2 / w_i, and so of an RMSE, needs the sum over i != j of cov(E_i, E_j)^2 /
+(w_i w_j). In batches the covariance of two cells is taken to be that of their blocks, shared out as s_i s_j; the
+square of an estimated covariance is too large on average, and the bias is taken out.
 """
 
 import numpy as np

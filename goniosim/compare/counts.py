@@ -24,9 +24,9 @@ whether so much can have gone unseen: as long as sum E <= 3 / rays the model may
 it is wrong by at least (1 - c) of its size, c = 3 / (rays sum E). So c (2 - c) of the squared error,
 all of it up to sum E = 3 / rays, is explained by what went unseen.
 
-Estimators whose paths share events or deposits have no hits. For them the effective number of a cell is (E / s)^2, and a true
-model expects few only where the result itself calls a cell or its mirror image uncertain: elsewhere dim cells are known as
-well as bright ones.
+Estimators whose paths share events or deposits have no hits. For them the effective number of a cell is (E / s)^2, and
+a true model expects few only where the result itself calls a cell or its mirror image uncertain: elsewhere dim cells
+are known as well as bright ones.
 """
 
 from dataclasses import dataclass

@@ -11,13 +11,13 @@ With delta the model's true error and V the covariance of the noise of the cells
 
     4 sum w_i delta_i V_ij w_j delta_j  +  2 sum w_i w_j V_ij^2:
 
-exact for a Gaussian, and for hits of equal weight, which are Poissonian. The diagonal, sum w^2 (4 delta^2 s^2 + 2 s^4), is
-estimated from d and s; where s enters it is that
-of the mirror-image cell, which has the same expectation but is not correlated with this one's d. (A cell
-that holds Dirac light has no such twin.) The first sum then holds the second twice, since d has the noise in it. What lies off
-the diagonal is known, because a path leaves in one cell only, or comes from batches: see `goniosim.sums`. So do the errors
-of the albedo. If the noise itself is estimated from f + 1 batches, ``noise`` has the variance (2 / f) sum w_i w_j V_ij^2.
-Where hits are few or absent it is taken from the model, see `counts`.
+exact for a Gaussian, and for hits of equal weight, which are Poissonian. The diagonal, sum w^2 (4 delta^2 s^2 + 2
+s^4), is estimated from d and s; where s enters it is that of the mirror-image cell, which has the same expectation but
+is not correlated with this one's d. (A cell that holds Dirac light has no such twin.) The first sum then holds the
+second twice, since d has the noise in it. What lies off the diagonal is known, because a path leaves in one cell only,
+or comes from batches: see `goniosim.sums`, as for the errors of the albedo. If the noise itself is estimated from f + 1
+batches, ``noise`` has the variance (2 / f) sum w_i w_j V_ij^2. Where hits are few or absent it is taken from the
+model, see `counts`.
 """
 
 from dataclasses import dataclass, fields
@@ -44,8 +44,8 @@ class Measures:
         See above; ``variance`` is that of ``squared - noise``, and ``variance_if_true`` what it
         would be with delta = 0. In 1/sr, 1/sr, 1/sr^2 and 1/sr^2.
     unseen, unseen_squared : ndarray
-        Where no path hit the component in the channel: hits that a true model expects, and how much of ``squared`` is due
-        to them; 0 elsewhere.
+        Where no path hit the component in the channel: hits that a true model expects, and how much of ``squared`` is
+        due to them; 0 elsewhere.
     hidden : ndarray
         Squared error that unhit cells may hide, in 1/sr.
     norm : ndarray

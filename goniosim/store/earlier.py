@@ -1,8 +1,9 @@
-"""Results of the schemas 1.0 and 1.1, as those of today: what they do not say follows from what they say, or stays open.
+"""Results of the schemas 1.0 and 1.1, as those of today: what they leave out follows from the rest, or stays open.
 
-All of them are of independent paths (`analog`). Of each component the albedo was an entry of the audit, and which cells are
-uncertain follows from energies, errors and rays. The cost was one of all directions together: each gets the rays, an equal share
-of the time, and the noise floor of all, so that sums of times and root mean squares of noise are what they were.
+All of them are of independent paths (`analog`). Of each component the albedo was an entry of the audit, and which
+cells are uncertain follows from energies, errors and rays. The cost was one of all directions together: each gets the
+rays, an equal share of the time, and the noise floor of all, so that sums of times and root mean squares of noise are
+what they were.
 """
 
 from collections.abc import Mapping

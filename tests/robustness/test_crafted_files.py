@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from crafting import craft
-from goniosim.errors import DamagedFileError
+from goniosim.errors import AnnotatedFileWarning, DamagedFileError
 from goniosim.store import open_result, write_result
 from synthetic import make_result
 
@@ -256,6 +256,38 @@ def test_each_is_refused_in_one_line(path, edit, words):
         open_result(path)
     assert re.search(words, str(caught.value)) and str(caught.value).startswith(f"{path}: ")
     assert "\n" not in str(caught.value)
+
+
+BATCHES = "reflection/internal/batches"
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (values(BATCHES, lambda v: 1.5 * v), "COMPONENT/batches must be two or more, with the mean of them"),
+        (values(BATCHES, lambda v: v * np.inf), f"{BATCHES} must be finite"),
+        (dataset(BATCHES, np.zeros((2, 32, 3, 1, 1))), f"{BATCHES} has shape"),
+        (dataset("batch", shape=(1 << 40,), dtype="i8", chunks=(1 << 20,)), f"{BATCHES} has shape"),
+        (values("reflection/internal/node_bias", lambda v: -v), "node_bias must be finite and 0 or more"),
+        (dataset("reflection/internal/estimator", np.array([b"analog", b"split"])), "COMPONENT/batches must be two"),
+        (lambda file: file["reflection/internal"].create_dataset("hits", data=[1]), None),
+    ],
+    ids=["mean", "infinite", "blocks", "endless", "bias", "analog", "added"],
+)
+def test_batches_belong_to_what_they_are_of(tmp_path, edit, words):
+    """What was added without being announced is no part of the file."""
+    path = tmp_path / "r.h5"
+    components = ("reflection/direct", "reflection/internal")
+    write_result(make_result(rows=2, columns=4, components=components, estimator="split"), path)
+    if words is None:
+        with h5py.File(path, "r+") as file:
+            edit(file)
+        with pytest.warns(AnnotatedFileWarning):
+            assert open_result(path).components["reflection/internal"].hits is None
+        return
+    craft(path, edit)
+    with pytest.raises(DamagedFileError, match=words):
+        open_result(path)
 
 
 @pytest.mark.parametrize("case", ["huge", "bomb", "cost-endless", "unwritten"])

@@ -334,6 +334,34 @@ def test_schema_1_0_is_still_read(tmp_path):
     refused(path, newer, NewerSchemaError)
 
 
+def test_schema_1_1_is_still_read(tmp_path):
+    """Its one cost for all directions is shared out; albedos were in the audit; the rest follows from what it holds."""
+    path = tmp_path / "old.h5"
+    path.write_bytes(gzip.decompress((DATA / "result-1.1.h5.gz").read_bytes()))
+    result = open_result(path)
+    assert read_header(path)["schema_version"] == "1.1" and result.estimator == "analog"
+    internal, direct = result.components["reflection/internal"], result.components["reflection/direct"]
+    np.testing.assert_allclose(internal.albedo[0], OLD_ALBEDO, rtol=1e-12)
+    np.testing.assert_array_equal(result.albedo("reflection/internal")[1], result.audit.stderr["reflected_internal"])
+    np.testing.assert_array_equal(direct.albedo, result.audit.direct_integrated)
+    assert direct.estimator == ["integrated", "integrated"] and direct.uncertain is None and direct.hits is None
+    (order,) = internal.orders.values()
+    for part in (internal, order):
+        assert part.uncertain.shape == part.energy.shape and part.batches is None and part.node_bias is None
+        # Three hits are too few; of thousands of hits ten count.
+        hits = np.broadcast_to(part.hits[:, None], part.energy.shape)
+        assert part.uncertain[hits < 10].all() and not part.uncertain[hits > 100].any()
+    # The order is all there is: its error, from cells, is that of the audit but for the scatter of parts.
+    np.testing.assert_allclose(order.albedo_stderr, internal.albedo_stderr, rtol=4.0 / (2 * 63) ** 0.5)
+    cost = result.cost
+    assert cost.rays.tolist() == [[625, 1250, 2500, 5000, 10_000]] * 2
+    assert cost.elapsed[-1] == pytest.approx(2.0 * cost.seconds[0, -1]) and (cost.seconds[0] == cost.seconds[1]).all()
+    assert cost.noise("reflection/internal")[-1] == pytest.approx(0.00173277, rel=1e-5)
+    write_result(result, tmp_path / "new.h5")
+    assert read_header(tmp_path / "new.h5")["schema_version"] == "1.2"
+    np.testing.assert_array_equal(open_result(tmp_path / "new.h5").cost.seconds, cost.seconds)
+
+
 def test_a_copy_is_as_good(tmp_path, path):
     """The fixture is sound, so the refusals above are due to what was done to it."""
     shutil.copy(path, tmp_path / "b")

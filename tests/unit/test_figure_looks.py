@@ -100,6 +100,14 @@ def test_cells_that_were_not_hit_look_unlike_dark_and_invalid_ones():
     direct = result.components["reflection/direct"]
     assert panels.unseen_cells([direct], result.cells, 0) is None
     assert panels.unseen_cells([direct, component], result.cells, 0) is None
+    component.hits, counted = None, component.hits
+    # Without hits darkness is all that tells.
+    component.estimator = ["split"]
+    assert panels.unseen_cells([component], result.cells, 0).tolist() == [
+        [True, True, False, False],
+        *[[False] * 4] * 2,
+    ]
+    component.hits, component.estimator = counted, ["analog"]
 
     numbers = view.disk(result.cells, 0, 60.0, 60)
     disk = disks.Board(Figure(figsize=(3.0, 3.0))).disk(0.0, 0.0, 2.0)

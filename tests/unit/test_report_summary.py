@@ -23,24 +23,22 @@ def _line(lines, start):
     return found
 
 
-def test_albedo_of_a_sampled_component_has_the_error_of_the_audit(result):
-    result.audit.energy["reflected_internal"][1, 2] = 0.12345
-    result.audit.stderr["reflected_internal"][1, 2] = 0.0003
+def test_albedo_of_a_sampled_component_has_the_error_of_its_sum(result):
+    component = result.components["reflection/internal"]
+    component.albedo[1, 2], component.albedo_stderr[1, 2] = 0.12345, 0.0003
     assert "0.1235 ± 0.0003" in audit.albedo_lines(result)[-1]
 
 
 def test_albedo_of_the_direct_reflection_is_the_integrated_one(result):
-    result.audit.direct_integrated[:] = 0.0625
-    result.audit.direct_integrated_stderr[:] = 0.0
+    direct = result.components["reflection/direct"]
+    direct.albedo[:], direct.albedo_stderr[:] = 0.0625, 0.0
     assert all("0.06250" in line for line in audit.albedo_lines(result)[2:])
 
 
 def test_channels_that_agree_share_a_row(result):
-    for arrays in (result.audit.energy, result.audit.stderr):
-        for array in arrays.values():
+    for component in result.components.values():
+        for array in (component.albedo, component.albedo_stderr):
             array[:, 2] = array[:, 1]
-    for array in (result.audit.direct_integrated, result.audit.direct_integrated_stderr):
-        array[:, 2] = array[:, 1]
     rows = audit.albedo_lines(result)[2:]
     assert len(rows) == 4
     assert sum("GB" in row for row in rows) == 2
@@ -119,6 +117,24 @@ def test_description_tells_status_effects_and_origin(result):
     assert "Effects simulated: absorption, colour" in text
     assert "not called for: orders, transmission" in text
     assert "transmission contains a perfectly sharp (Dirac) part" in text
+
+
+def test_what_is_uncertain_and_what_nodes_may_hide_are_said_in_a_line(result):
+    """Only of components that have it."""
+    text = summary.summary(result)
+    assert "uncertain" not in text and "nodes" not in text
+    few = make_result(channels=("R", "G", "B"), estimator={"transmission": "split"}, rays=200)
+    lines = summary.heading_lines(few)
+    (uncertain,) = [line for line in lines if line.startswith("  transmission: ") and "uncertain" in line]
+    component = few.components["transmission"]
+    share = component.energy[component.uncertain].sum() / component.energy.sum()
+    assert f"{100.0 * share:.2g} % of its energy" in uncertain
+    assert "  transmission: nodes may add an error of up to 1e-06 sr^-1/2, whatever the noise" in lines
+    assert lines[3].endswith("estimator mixed")
+    data = json.loads(json.dumps(summary.as_data(few), allow_nan=False))
+    assert data["estimator"] == "mixed" and data["components"]["transmission"]["estimator"] == ["split", "split"]
+    assert data["components"]["transmission"]["uncertain_energy"] == pytest.approx(share)
+    assert data["components"]["reflection/direct"]["uncertain_energy"] is None
 
 
 def test_plain_data_survives_json_and_agrees_with_the_result(result):

@@ -45,7 +45,7 @@ def test_albedos_add_up(result):
 @pytest.mark.parametrize(
     ("estimators", "batches", "expected"),
     [
-        # Batches that scatter together, up and down by a tenth; one component against the other; nothing known; two runs.
+        # Batches that scatter together; one component against the other; nothing known; two runs.
         (("split", "split"), (1.0, 1.0), "sum"),
         (("split", "split"), (1.0, -1.0), "difference"),
         (("split", "split"), None, "sum"),
