@@ -1,7 +1,7 @@
 """Operators: a walk bins what arrives at a wide interface, whose BSDF is then applied to all cells at once.
 
-Every arrival meets every cell, so that a few thousand light paths do the work of 10^9. The nodes leave a bias of the
-fourth order in their distance, which `Operator.coarse_minus_fine` measures.
+Every arrival meets every cell, so that a few thousand light paths do the work of 10^9. The nodes leave a small bias,
+which `Operator.coarse_minus_fine` bounds.
 """
 
 import numpy as np
@@ -10,12 +10,13 @@ from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals, waiting_rays
 from ..operators.blas import one_thread
 from ..operators.choice import IN, choose, inner_index
-from ..operators.gather import POINTS, gather
+from ..operators.gather import POINTS, TAILS, gather
 
 # Light paths between two looks at `stop`: some tens of milliseconds.
 PATHS_PER_CALL = 1 << 13
-# In the time of one event of the analog walk: of an event here, of a point of a cell, and multiplications.
-EVENT, POINT, MULTIPLICATIONS = 5, 5, 400
+# An event here, and a point of a cell, take as long as so many events of the analog walk; one of those as long as
+# so many multiplications of a product of matrices.
+EVENT, POINT, MULTIPLICATIONS = 9, 9, 300
 _NUMBER = 8
 
 
@@ -73,7 +74,8 @@ class Operator:
     def coarse_minus_fine(self, direction, size, keys):
         """Estimates by every second node and by every node, from the same light paths and points of cells.
 
-        The bias of the fine ones is about a fifteenth of the difference.
+        The difference bounds the bias of the fine ones: that is a fifteenth of it where lobes are smooth, and up to a
+        half where corners of Fresnel's curve decide.
 
         Returns
         -------
@@ -191,4 +193,4 @@ class Workspace:
             key,
             out.reshape(radiance.shape[2], -1),
         )
-        return POINT * POINTS * plan.rows * plan.width
+        return POINT * (POINTS + (TAILS if len(self.exits) else 0)) * plan.rows * plan.width

@@ -21,7 +21,8 @@ from ...slices.grid import HALF_PI
 from ..lattice import coordinate
 from .nodes import interpolate
 
-POINTS = 4
+# Points of a cell, and facets of the tail, which follow from every second of them.
+POINTS, TAILS = 4, 2
 # Which child of a replicate's key draws the points.
 CELLS = 2
 # Share of the facets that is the tail, and how its points are drawn: 1 - u = TAIL t^3, of weight 3 t^2.
@@ -81,14 +82,14 @@ def gather(values, stride, parametrization, rows, columns, light, exits, source,
             for e in range(found.shape[0]):
                 out[e, cell] += measure[i] / POINTS * core[i, e]
         # A smooth exit has one facet.
-        for j in range(2 if exits[0] > 0.0 else 0):
+        for j in range(TAILS if exits[0] > 0.0 else 0):
             i = 2 * j
-            t = coordinate(uniform(cell_key, 5), j, 0.5)
-            u = coordinate(uniform(cell_key, 4), j, 0.5)
+            t = coordinate(uniform(cell_key, 5), j, 1.0 / TAILS)
+            u = coordinate(uniform(cell_key, 4), j, 1.0 / TAILS)
             height = 1.0 - max(TAIL * t * t * t, _LEAST_TAIL)
             _before(x[i], y[i], z[i], u, height, exits, source, light, taus, stride, values, found)
             for e in range(found.shape[0]):
-                out[e, cell] += 0.5 * TAIL * 3.0 * t * t * measure[i] * (found[e] - core[i, e])
+                out[e, cell] += TAIL / TAILS * 3.0 * t * t * measure[i] * (found[e] - core[i, e])
 
 
 @stage
@@ -124,12 +125,12 @@ def _before(x, y, z, azimuth, height, exits, source, light, taus, stride, values
     sine, cosine = sincos_turns(azimuth)
     mx, my, mz = sample_visible_normal(x, y, z, alpha, cosine, sine, height)
     facet = min(1.0, max(0.0, x * mx + y * my + z * mz))
-    _, cos_t = fresnel_dielectric(facet, eta)
+    reflectance, cos_t = fresnel_dielectric(facet, eta)
     along = facet / eta - cos_t
     bx = x / eta - along * mx
     by = y / eta - along * my
     bz = z / eta - along * mz
-    gain = dielectric_transmittance(facet, eta) * smith_g1(bz, alpha) / (eta * eta)
+    gain = (1.0 - reflectance) * smith_g1(bz, alpha) / (eta * eta)
     bz = max(bz, _LEAST_COSINE)
     interpolate(bx, by, bz, stride, values, found)
     if source.shape[0] > 0:
