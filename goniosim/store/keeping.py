@@ -62,8 +62,8 @@ class Standing:
     def holds(self, asked: Simulation) -> bool:
         """Whether it is of the scene asked for, and gives what is asked for: the rays, or the accuracy.
 
-        A target that was not reached counts for whoever sets the same limits, or narrower ones: to run it again
-        would lead no further.
+        A target that was not reached counts for whoever asks for the same with the same limits, or narrower ones: to
+        run it again would lead no further.
         """
         if self.rays is None or self.simulation is None:
             return False
@@ -71,9 +71,11 @@ class Standing:
         if asked.target is None:
             spread = complete and target is not None and self.rays.mean() >= asked.most_rays
             return spread or bool((self.rays >= asked.most_rays).all())
-        if not complete or target is None or not asked.target.is_met_by(target):
+        if not complete or target is None:
             return False
-        return bool(self.target_reached) or _are_narrower(asked, self.simulation)
+        if self.target_reached:
+            return asked.target.is_met_by(target)
+        return asked.target == target and _are_narrower(asked, self.simulation)
 
     def outweighs(self, rays: np.ndarray) -> bool:
         """Whether it is of the scene asked for, with more rays, all directions together."""

@@ -108,7 +108,7 @@ def test_a_target_that_is_missed_is_9_and_the_result_is_kept(goniosim, folder, a
     assert json.loads(goniosim("info", "small.h5", "--json")[1])["target_reached"] is False
     # Once more, to no avail: nothing is traced, and it is still missed.
     before = (folder / "small.h5").read_bytes()
-    for line in (TIMES, "2% --max-time 10m", "1% --max-time 5m --max-rays 1e6"):
+    for line in (TIMES, "1% --max-time 5m --max-rays 1e6"):
         code, out, err = call(goniosim, f"--target {line}")
         assert (code, out, err.splitlines()[-1]) == (9, "", MISSED)
         assert "stays as it is: it holds 1000 rays per direction of this scene, by a target of 1 % of slice" in err
@@ -116,11 +116,14 @@ def test_a_target_that_is_missed_is_9_and_the_result_is_kept(goniosim, folder, a
     assert (len(aimed["asked"]), (folder / "small.h5").read_bytes()) == (1, before)
     # Whoever asks for these rays has them.
     assert call(goniosim, "--rays 1000 -q") == (0, "", "")
-    # More time is worth another run.
+    # What it missed says nothing of less; it is worth more than the run that tells.
     aimed["missed"].clear()
+    aimed["rays"] = 900
+    assert "small.h5 stays as it is: it holds 1000 rays" in call(goniosim, "--target 2% --max-time 10m")[2]
+    # More time is worth another run.
     aimed["rays"] = 2000
     assert call(goniosim, "--target 1% --max-time 11m -q") == (0, "", "")
-    assert (len(aimed["asked"]), open_result(folder / "small.h5").target_reached) == (2, True)
+    assert (len(aimed["asked"]), open_result(folder / "small.h5").target_reached) == (3, True)
 
 
 @pytest.mark.parametrize(
