@@ -91,3 +91,19 @@ def test_a_single_run_makes_a_law_as_well():
     law = fit(ladder(0.5, rays=(1e4,)), NAME, NORM, False)
     assert (law.slope, law.slope_error) == (0.5, 0.0)
     assert law.time(2e4)[1] == pytest.approx(2.0 * (0.05 + 1e-3))
+
+
+def test_runs_by_other_means_than_the_last_are_left_out():
+    """A change of the estimator is no slope; of the two runs that remain none is fitted."""
+    few, many = ladder(0.5, level=100.0)[:2], ladder(0.5)[2:]
+    for rung in many:
+        rung.estimators[NAME] = ["operator", "operator"]
+    law = fit(few + many, NAME, NORM, False)
+    assert (law.rungs, law.slope) == (2, 0.5)
+    assert law.error(1e6) == pytest.approx([0.01, 0.005])
+
+
+def test_no_lattice_is_trusted_beyond_its_steepest_slope():
+    law = fit(ladder(1.4), NAME, NORM, False)
+    assert law.slope == pytest.approx(1.4)
+    assert law.used_slope == 1.0
