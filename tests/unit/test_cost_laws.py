@@ -29,8 +29,8 @@ def test_a_law_is_recovered_from_an_exact_ladder(slope, independent):
     law = fit(ladder(slope), NAME, NORM, independent)
     assert law.slope == pytest.approx(slope)
     assert law.error(1e6) == pytest.approx(10.0 * 1e6**-slope * np.array([1.0, 0.5]))
-    found = price(law, 0.01)
-    rays = (10.0 / 0.01 * np.array([1.0, 0.5])) ** (1.0 / slope)
+    found = price(law, 0.001)
+    rays = (10.0 / 0.001 * np.array([1.0, 0.5])) ** (1.0 / slope)
     cpu = (0.05 + 1e-7 * rays).sum()
     assert found.cpu_seconds == pytest.approx(0.3 + cpu)
     assert found.seconds == pytest.approx(0.2 + 0.5 * cpu)
@@ -42,6 +42,8 @@ def test_what_the_ladder_reached_is_measured_and_the_rest_predicted_less_surely(
     assert [each.error for each in found] == list(ERRORS)
     # The worse direction reached 10 / 800 = 1.25 %.
     assert [each.measured for each in found] == [True, True, False, False, False]
+    # No smaller run than the first is offered.
+    assert price(law, 0.5).cpu_seconds == pytest.approx(0.3 + law.time(1e4)[1].sum())
     assert np.all(np.diff([each.seconds for each in found]) > 0.0)
     assert found[-1].uncertainty > found[1].uncertainty > 0.0
 

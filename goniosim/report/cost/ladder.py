@@ -6,7 +6,8 @@ from dataclasses import replace
 from ...engine import warm_up
 from .runs import ESTIMATORS, asked, run
 
-FIRST = 1 << 14
+# What is not analog makes replicates, which take some rays to be worth making.
+FIRST = {"auto": 1 << 17, "analog": 1 << 14}
 # A rung that takes so many times the rays; a smaller step where the time does not last for that.
 STEPS = (4, 2)
 # Of these the first tells what the second costs.
@@ -38,7 +39,7 @@ def climb(scene, seconds, say, estimators=ESTIMATORS):
     rungs = {estimator: [] for estimator in estimators}
     spent = dict.fromkeys(estimators, 0.0)
     last = dict.fromkeys(estimators, 0.0)
-    rays = dict.fromkeys(estimators, FIRST)
+    rays = {estimator: FIRST[estimator] for estimator in estimators}
     while rays:
         # In turns: whatever else the machine does falls on all alike.
         for estimator in list(rays):
