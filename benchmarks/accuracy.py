@@ -22,7 +22,8 @@ ANGLES = (30.0, 60.0, 80.0)
 # Gain over independent paths that must be, and that is aimed at.
 MUST = {"plastic": 250.0, "metal": 500.0, "slab": 2000.0}
 AIM = 10_000.0
-FIRST_RAYS, MOST_TRIALS = 1 << 13, 12
+# Fewer are not worth replicates.
+FIRST_RAYS, MOST_TRIALS = 1 << 17, 12
 
 
 def rays_for(scene, estimator, seconds, threads):

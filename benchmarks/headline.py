@@ -25,7 +25,8 @@ CATEGORIES = ("plastics", "metals", "slabs")
 RAYS = 1.6e8
 # Mean and largest time of a slice that must be, in seconds.
 MUST_MEAN, MUST_MAX = 0.5, 2.0
-FIRST_RAYS, MOST_TRIALS = 1 << 14, 8
+# Fewer are not worth replicates.
+FIRST_RAYS, MOST_TRIALS = 1 << 17, 8
 # The noise of a run is known to some per cent.
 MARGIN = 1.03
 

@@ -4,7 +4,7 @@ import re
 
 import click
 
-from .options import PATH, overrides_of, set_option, threads_option
+from .options import PATH, overrides_of, set_option
 from .policy import debug_option, say
 from .signals import tidied_up
 
@@ -38,7 +38,7 @@ class Duration(click.ParamType):
     help="Time to spend on runs, about, such as 20s or 5m; compilation and --models come on top.",
 )
 @click.option("--models", is_flag=True, help="Add the models that apply, as points with their errors and times.")
-@threads_option
+@click.option("--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default.")
 @set_option
 @click.option("--json", "as_json", is_flag=True, help="For programs: print JSON, and draw only with -o.")
 @debug_option

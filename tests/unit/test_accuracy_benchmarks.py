@@ -98,7 +98,7 @@ def test_the_page_is_written_with_its_pictures(monkeypatch, tmp_path):
     small = {"rows": 6, "columns": 12}
     monkeypatch.setattr(document, "CASES", {name: document.CASES[name] for name in ("plastic", "slab")})
     monkeypatch.setattr(page, "load_scene", lambda path: load_scene(path, [f"slice.{k}={v}" for k, v in small.items()]))
-    monkeypatch.setattr(ladder, "FIRST", 1 << 11)
+    monkeypatch.setattr(ladder, "FIRST", {"auto": 1 << 11, "analog": 1 << 11})
     (tmp_path / "docs").mkdir()
     assert page.main(["--max-time", "0.1", "--root", str(tmp_path)]) == 0
     text = (tmp_path / "docs" / "accuracy_and_time.md").read_text(encoding="utf-8")

@@ -29,8 +29,8 @@ def test_a_law_is_recovered_from_an_exact_ladder(slope, independent):
     law = fit(ladder(slope), NAME, NORM, independent)
     assert law.slope == pytest.approx(slope)
     assert law.error(1e6) == pytest.approx(10.0 * 1e6**-slope * np.array([1.0, 0.5]))
-    found = price(law, 0.01)
-    rays = (10.0 / 0.01 * np.array([1.0, 0.5])) ** (1.0 / slope)
+    found = price(law, 0.001)
+    rays = (10.0 / 0.001 * np.array([1.0, 0.5])) ** (1.0 / slope)
     cpu = (0.05 + 1e-7 * rays).sum()
     assert found.cpu_seconds == pytest.approx(0.3 + cpu)
     assert found.seconds == pytest.approx(0.2 + 0.5 * cpu)
@@ -42,6 +42,8 @@ def test_what_the_ladder_reached_is_measured_and_the_rest_predicted_less_surely(
     assert [each.error for each in found] == list(ERRORS)
     # The worse direction reached 10 / 800 = 1.25 %.
     assert [each.measured for each in found] == [True, True, False, False, False]
+    # No smaller run than the first is offered.
+    assert price(law, 0.5).cpu_seconds == pytest.approx(0.3 + law.time(1e4)[1].sum())
     assert np.all(np.diff([each.seconds for each in found]) > 0.0)
     assert found[-1].uncertainty > found[1].uncertainty > 0.0
 
@@ -91,3 +93,19 @@ def test_a_single_run_makes_a_law_as_well():
     law = fit(ladder(0.5, rays=(1e4,)), NAME, NORM, False)
     assert (law.slope, law.slope_error) == (0.5, 0.0)
     assert law.time(2e4)[1] == pytest.approx(2.0 * (0.05 + 1e-3))
+
+
+def test_runs_by_other_means_than_the_last_are_left_out():
+    """A change of the estimator is no slope; of the two runs that remain none is fitted."""
+    few, many = ladder(0.5, level=100.0)[:2], ladder(0.5)[2:]
+    for rung in many:
+        rung.estimators[NAME] = ["operator", "operator"]
+    law = fit(few + many, NAME, NORM, False)
+    assert (law.rungs, law.slope) == (2, 0.5)
+    assert law.error(1e6) == pytest.approx([0.01, 0.005])
+
+
+def test_no_lattice_is_trusted_beyond_its_steepest_slope():
+    law = fit(ladder(1.4), NAME, NORM, False)
+    assert law.slope == pytest.approx(1.4)
+    assert law.used_slope == 1.0

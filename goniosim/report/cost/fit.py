@@ -9,7 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .ladder import alike
+
 INDEPENDENT = 0.5
+# What no lattice exceeds for sums over cells, whose edges are steps.
+STEEPEST = 1.0
+# Fewer runs do not tell a slope.
+FEWEST = 3
 # No ladder of some seconds tells more about a norm over thousands of correlated cells, or about a clock.
 LEAST_SCATTER = 0.02
 
@@ -56,7 +62,7 @@ class Law:
     @property
     def used_slope(self):
         """The slope to predict with: more replicates instead of larger ones always give that of independent paths."""
-        return max(self.slope, INDEPENDENT)
+        return min(max(self.slope, INDEPENDENT), STEEPEST)
 
     def error(self, rays):
         """Relative errors with so many rays, shape (M,)."""
@@ -79,6 +85,7 @@ def fit(rungs, component, norm, independent):
     Parameters
     ----------
     rungs : list of Run
+        Those by other means than the last are left out.
     component : str
     norm : ndarray, shape (M,)
         Of the slices, from the best run there is.
@@ -89,6 +96,7 @@ def fit(rungs, component, norm, independent):
     -------
     Law
     """
+    rungs = alike(rungs, component)
     noise = np.array([rung.noise[component] for rung in rungs])
     lit = (norm > 0.0) & (noise[-1] > 0.0)
     # A run that met no light in some direction tells nothing of it.
@@ -98,7 +106,8 @@ def fit(rungs, component, norm, independent):
     y = np.log(np.where(lit, noise, 1.0) / np.where(lit, norm, 1.0))
     level = np.where(lit, y.mean(axis=0), np.nan)
     middle, spread = x.mean(), float(np.sqrt(((x - x.mean()) ** 2).sum()))
-    falls = -((x - middle) @ (y - level)[:, lit]) / spread**2 if spread > 0.0 and not independent else np.zeros(0)
+    fitted = len(rungs) >= FEWEST and not independent
+    falls = -((x - middle) @ (y - level)[:, lit]) / spread**2 if fitted else np.zeros(0)
     slope = float(falls.mean()) if len(falls) else INDEPENDENT
     left = (y - level)[:, lit] + slope * (x - middle)[:, None]
     # Directions share the seed and the estimator: their deviations are taken to be one and the same.

@@ -11,7 +11,7 @@ from .cells import finer_scene, lost_to_cells
 from .directions import dense_scene, lost_between
 from .effects import added
 from .fit import fit
-from .ladder import climb
+from .ladder import FIRST, climb
 from .models import model_points
 from .prices import prices
 from .runs import ESTIMATORS, run
@@ -19,8 +19,6 @@ from .subcells import subcell_errors
 
 # Shares of the time: of each estimator's ladder, and of each of the other parts.
 LADDER, PART = 0.3, 0.12
-# Fewer rays would show nothing but noise.
-FEWEST_RAYS = 1 << 12
 
 
 @dataclass(frozen=True)
@@ -145,4 +143,4 @@ def _limit(scene, best, seconds, look):
         return {}
     per_ray = rung.seconds.sum() / rung.rays.sum()
     rays = seconds / (per_ray * len(scene.incident.theta_deg))
-    return look(run(scene, estimator, max(FEWEST_RAYS, int(rays))).result)
+    return look(run(scene, estimator, max(FIRST[estimator], int(rays))).result)

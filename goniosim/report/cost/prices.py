@@ -49,6 +49,9 @@ def price(law, error):
     if not lit.any():
         return None
     rays, unknown = (values[lit] for values in law.rays(error))
+    # Nothing is known of runs smaller than the first.
+    small = rays < law.fewest
+    rays, unknown = np.where(small, law.fewest, rays), np.where(small, 0.0, unknown)
     fixed, growing = law.fixed[:, lit], law.per_ray[:, lit] * rays
     total = law.overhead + (fixed + growing).sum(axis=1)
     # The directions may be wrong all alike.

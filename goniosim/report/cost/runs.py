@@ -61,7 +61,7 @@ def run(scene, estimator, rays, seed=None, threads=None):
     Run
     """
     start, cpu_start = time.perf_counter(), time.process_time()
-    result = simulate(scene, rays=rays, seed=seed, threads=threads)
+    result = simulate(asked(scene, estimator, rays), seed=seed, threads=threads)
     elapsed, cpu_elapsed = time.perf_counter() - start, time.process_time() - cpu_start
     directions = len(result.theta_deg)
     # The engine counts all directions together.
@@ -80,6 +80,11 @@ def run(scene, estimator, rays, seed=None, threads=None):
         estimators={name: ["analog"] * directions for name in found},
         result=result,
     )
+
+
+def asked(scene, estimator, rays):
+    """The scene with so many rays, by an estimator: the one that there is."""
+    return scene.model_copy(update={"simulation": scene.simulation.model_copy(update={"rays": rays})})
 
 
 def sampled(result):
