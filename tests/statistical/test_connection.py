@@ -66,15 +66,16 @@ def test_a_smooth_top_agrees_with_its_closed_form(parametrization, columns):
         assert abs(total.mean() - exact.sum()) < 6.0 * error < 6e-3 * exact.sum()
 
 
-def test_a_replicate_of_a_single_path_has_no_bias():
-    """Means of one path each, whose product would be 10 sigma off if they had anything in common.
+@pytest.mark.parametrize(("size", "eta", "count"), [(1, 1.5, 3000), (16, 2.5, 800)])
+def test_small_replicates_have_no_bias(size, eta, count):
+    """Neither from means that share draws, which shows with one path each, nor from a series cut where it is faint.
 
-    3000 replicates: 4.5 sigma, false-alarm rate 7e-6.
+    4.5 sigma of a mean over so many replicates: false-alarm rate 7e-6.
     """
-    plan = make_plan(make_scene([dielectric(1.5), lambert(0.9)], 30.0, rows=1, columns=1))
-    total = replicates(plan, 1, count=3000).sum(axis=(1, 2, 3, 4))
-    exact = plastic_albedo(math.cos(math.radians(30.0)), 1.5, 0.9)
-    assert abs(total.mean() - exact) < 4.5 * total.std(ddof=1) / 3000**0.5 < 0.1 * exact
+    plan = make_plan(make_scene([dielectric(eta), lambert(0.999)], 30.0, rows=1, columns=1))
+    total = replicates(plan, size, count=count).sum(axis=(1, 2, 3, 4))
+    exact = plastic_albedo(math.cos(math.radians(30.0)), eta, 0.999)
+    assert abs(total.mean() - exact) < 4.5 * total.std(ddof=1) / count**0.5 < 0.1 * exact
 
 
 # Layers; the second refracts nothing from grazing directions outside.
@@ -209,7 +210,9 @@ def test_seeds_are_covered_as_often_as_students_t_says(parametrization, size, se
     In the worst case all cells of a seed share one error, and as many deviations as seeds are independent: 4.5
     sigma of a share and of a variance then. False-alarm rate 7e-6 each.
     """
-    plan = make_plan(make_scene(STUDY, 60.0, parametrization))
+    # On classic slices a column tells all: those of one block are enough.
+    columns = 12 if parametrization == "classic" else 360
+    plan = make_plan(make_scene(STUDY, 60.0, parametrization, columns=columns))
     area = np.maximum(plan.geometry[0].projected_solid_angle, 1e-300)
     found = {"cells": [], "blocks": []}
     for seed in range(seeds):
@@ -270,13 +273,17 @@ def test_blocks_of_the_study_agree_with_the_analog_engine(parametrization):
         [dielectric(2.5, 0.5), lambert(1.0)],
         [dielectric(0.75), lambert(0.6)],
         [dielectric(0.75, 0.5), medium(0.1), lambert(0.6)],
-        [dielectric(1.02, 0.2), medium(6.0), lambert(0.6)],
+        [dielectric(1.3, 0.2), medium(6.0), lambert(0.6)],
     ],
     ids=["narrow", "wide", "dense", "light", "light and rough", "dark"],
 )
 def test_edges_agree_with_the_analog_engine(layers, parametrization):
-    """0, 50 and 89.9 degrees: 36 slices of 450 blocks, none beyond 5.5 (false-alarm rate 1e-3); totals beyond 4.5."""
-    scene = make_scene(layers, [0.0, 50.0, 89.9], parametrization, rows=30, columns=60)
-    for number, z in enumerate(against_analog(scene, 2048, 4_000_000)):
-        print(number, f"{z.size} rms {(z**2).mean() ** 0.5:.3f}, largest {abs(z).max():.2f}")
-        assert abs(z).max() < (4.5 if number % 2 else 5.5)
+    """0, 50 and 85 degrees: 36 slices of 450 blocks, none beyond 5.5 (false-alarm rate 1e-3); totals beyond 4.5.
+
+    At 50 and 85 degrees no light enters a smooth top of index 0.75.
+    """
+    scene = make_scene(layers, [0.0, 50.0, 85.0], parametrization, rows=30, columns=60)
+    for number, z in enumerate(against_analog(scene, 2048, 8_000_000)):
+        largest = abs(z).max(initial=0.0)
+        print(parametrization, number, f"{z.size} deviations, largest {largest:.2f}")
+        assert largest < (4.5 if number % 2 else 5.5)

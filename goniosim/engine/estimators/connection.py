@@ -10,7 +10,8 @@ the medium and the index n below relative to above, a cell receives
 A base also forgets how light came to it. So the energy arriving is a series of products: the share that the top lets
 in, times, for every further visit, rho and the share that comes back from the top. Every factor is a mean over light
 paths of its own, hence a product of independent means without bias; so is its product with the integral, whose draws
-are a cell's own. All factors are smooth integrals in two to four dimensions, which a lattice knows well.
+are a cell's own. All factors are integrals in two to four dimensions, smooth but for a bend at the critical angle,
+which a lattice knows well.
 """
 
 import math
@@ -69,9 +70,8 @@ class Connection:
         """Bytes shared by all threads, and of a workspace."""
         plan = self.plan
         cells = plan.rows * self.per_row
-        return 0, 8 * (
-            (N_SCRATCH + plan.n_distinct) * BLOCK + 2 * cells + plan.n_distinct * (2 * cells + plan.rows * plan.width)
-        )
+        numbers = (N_SCRATCH + plan.n_distinct) * BLOCK + 2 * cells
+        return 0, 8 * (numbers + plan.n_distinct * (2 * cells + plan.rows * plan.width))
 
     def workspace(self):
         """Scratch arrays of one thread."""
