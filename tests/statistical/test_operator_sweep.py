@@ -90,7 +90,9 @@ def test_study(name, theta):
 @pytest.mark.parametrize("theta", [0.0, 60.0, 89.9])
 @pytest.mark.parametrize("name", EDGES)
 def test_edges(name, theta):
-    """As above; what light at 89.9 degrees sends through an optically thin top is below what either can see."""
-    if "thin" in name and theta > 80.0:
+    """As above. Beyond its critical angle of 48.6 degrees only rare facets of a thin top let light in: all blocks
+    then deviate together, by seed up or down, and the rms of z says nothing.
+    """
+    if "thin" in name and theta > 48.0:
         theta = 45.0
     _check(*EDGES[name], theta, 1e-3)

@@ -60,6 +60,8 @@ def gather(values, stride, parametrization, rows, columns, light, exits, source,
     measure = np.empty(POINTS)
     width = out.shape[1] // rows
     cells_key = derive_key(key, CELLS)
+    # A smooth exit has one facet.
+    rough = exits.shape[0] > 0 and exits[0] > 0.0
     for cell in range(out.shape[1]):
         for e in range(out.shape[0]):
             out[e, cell] = 0.0
@@ -68,28 +70,19 @@ def gather(values, stride, parametrization, rows, columns, light, exits, source,
         u2 = uniform(cell_key, 1)
         if not _points(parametrization, cell // width, cell % width, rows, columns, light, u1, u2, x, y, z, measure):
             continue
-        if exits.shape[0] == 0:
-            for i in range(POINTS):
-                interpolate(x[i], y[i], z[i], stride, values, found)
-                for e in range(found.shape[0]):
-                    out[e, cell] += measure[i] / POINTS * found[e]
-            continue
-        azimuth = uniform(cell_key, 2)
-        height = (1.0 - TAIL) * uniform(cell_key, 3)
-        for i in range(POINTS):
-            u = coordinate(azimuth, i, 1.0 / POINTS)
-            _before(x[i], y[i], z[i], u, height, exits, source, light, taus, stride, values, core[i])
-            for e in range(found.shape[0]):
-                out[e, cell] += measure[i] / POINTS * core[i, e]
-        # A smooth exit has one facet.
-        for j in range(TAILS if exits[0] > 0.0 else 0):
-            i = 2 * j
+        facets = POINTS + (TAILS if rough else 0)
+        for j in range(facets):
+            tail = j >= POINTS
+            i = 2 * (j - POINTS) if tail else j
             t = coordinate(uniform(cell_key, 5), j, 1.0 / TAILS)
-            u = coordinate(uniform(cell_key, 4), j, 1.0 / TAILS)
-            height = 1.0 - max(TAIL * t * t * t, _LEAST_TAIL)
-            _before(x[i], y[i], z[i], u, height, exits, source, light, taus, stride, values, found)
+            height = 1.0 - max(TAIL * t * t * t, _LEAST_TAIL) if tail else (1.0 - TAIL) * uniform(cell_key, 3)
+            azimuth = uniform(cell_key, 4 if tail else 2)
+            azimuth = coordinate(azimuth, i, 1.0 / POINTS)
+            _radiance(x[i], y[i], z[i], azimuth, height, exits, source, light, taus, stride, values, found)
+            share = measure[i] * (3.0 * t * t * TAIL / TAILS if tail else 1.0 / POINTS)
             for e in range(found.shape[0]):
-                out[e, cell] += TAIL / TAILS * 3.0 * t * t * measure[i] * (found[e] - core[i, e])
+                out[e, cell] += share * (found[e] - core[i, e] if tail else found[e])
+                core[i, e] = core[i, e] if tail else found[e]
 
 
 @stage
@@ -118,26 +111,29 @@ def _points(parametrization, row, column, rows, columns, light, u1, u2, x, y, z,
 
 
 @stage
-def _before(x, y, z, azimuth, height, exits, source, light, taus, stride, values, found):
-    """Radiance in the direction (x, y, z) outside by one facet of the exit."""
-    alpha = exits[0]
-    eta = exits[1]
-    sine, cosine = sincos_turns(azimuth)
-    mx, my, mz = sample_visible_normal(x, y, z, alpha, cosine, sine, height)
-    facet = min(1.0, max(0.0, x * mx + y * my + z * mz))
-    reflectance, cos_t = fresnel_dielectric(facet, eta)
-    along = facet / eta - cos_t
-    bx = x / eta - along * mx
-    by = y / eta - along * my
-    bz = z / eta - along * mz
-    gain = (1.0 - reflectance) * smith_g1(bz, alpha) / (eta * eta)
-    bz = max(bz, _LEAST_COSINE)
-    interpolate(bx, by, bz, stride, values, found)
+def _radiance(x, y, z, azimuth, height, exits, source, light, taus, stride, values, found):
+    """Radiance in the direction (x, y, z) outside, through one facet if there is an exit."""
+    gain = 1.0
+    if exits.shape[0] > 0:
+        alpha = exits[0]
+        eta = exits[1]
+        sine, cosine = sincos_turns(azimuth)
+        mx, my, mz = sample_visible_normal(x, y, z, alpha, cosine, sine, height)
+        facet = min(1.0, max(0.0, x * mx + y * my + z * mz))
+        reflectance, cos_t = fresnel_dielectric(facet, eta)
+        along = facet / eta - cos_t
+        x = x / eta - along * mx
+        y = y / eta - along * my
+        z = z / eta - along * mz
+        gain = (1.0 - reflectance) * smith_g1(z, alpha) / (eta * eta)
+        z = max(z, _LEAST_COSINE)
+    interpolate(x, y, z, stride, values, found)
     if source.shape[0] > 0:
-        value, facet = microfacet_transmission(bx, by, bz, light[0], light[1], light[2], source[0], source[1])
+        value, facet = microfacet_transmission(x, y, z, light[0], light[1], light[2], source[0], source[1])
         value *= source[1] * source[1] * dielectric_transmittance(facet, source[1])
         for c in range(taus.shape[0]):
             found[c] += value
-    path = path_length(bz)
-    for e in range(found.shape[0]):
-        found[e] *= gain * transmittance(taus[e % taus.shape[0]], path)
+    if exits.shape[0] > 0:
+        path = path_length(z)
+        for e in range(found.shape[0]):
+            found[e] *= gain * transmittance(taus[e % taus.shape[0]], path)
