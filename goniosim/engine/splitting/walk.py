@@ -27,7 +27,6 @@ from .layout import (
     LATER,
     LAUNCHED,
     LEFT,
-    PHASES,
     POINT_U,
     POINT_V,
     RADIUS,
