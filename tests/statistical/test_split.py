@@ -57,8 +57,8 @@ def _z(replicates, mean, variance):
 
 
 NARROW = {
-    "metal": ([dielectric(1.5, 0.001), medium(0.1), conductor(1.45, [1.0, 0.01, 0.01], 0.001)], 30.0, "half"),
-    "slab": ([dielectric(1.5, 0.001), TAU, dielectric(1.0, 0.001)], 60.0, "half"),
+    "narrow metal": ([dielectric(1.5, 0.001), medium(0.1), conductor(1.45, [1.0, 0.01, 0.01], 0.001)], 30.0, "half"),
+    "narrow slab": ([dielectric(1.5, 0.001), TAU, dielectric(1.0, 0.001)], 60.0, "half"),
     "trap": (
         [dielectric(1.1, 0.3), dielectric(2.5), medium(0.01), dielectric(1.1), dielectric(1.3, 0.1)],
         30.0,
@@ -105,7 +105,7 @@ HONEST = {
         UP,
     ),
     "three": (*STACKS["three"], UP),
-    "narrow metal": (*NARROW["metal"], UP),
+    "narrow metal": (*NARROW["narrow metal"], UP),
 }
 
 
