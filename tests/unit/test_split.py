@@ -108,7 +108,9 @@ def test_light_in_the_plane_of_incidence_stays_on_the_slice():
 def test_memory_is_told_from_shapes():
     _, split = prepared(Split, small(THREE))
     workspace = split.workspace()
-    arrays = [array for array in vars(workspace).values() if isinstance(array, np.ndarray) and array is not split.scales]
+    arrays = [
+        array for array in vars(workspace).values() if isinstance(array, np.ndarray) and array is not split.scales
+    ]
     shared, own = split.memory
     assert shared == 0
     assert own <= sum(array.nbytes for array in arrays) < 1.05 * own
@@ -116,7 +118,12 @@ def test_memory_is_told_from_shapes():
 
 @pytest.mark.parametrize(
     "parametrization, alpha, least, most",
-    [("classic", 0.0, 1, 1), ("classic", 0.001, 1, 1), ("classic", 0.05, 2, MOST_FACETS), ("half", 0.001, 2, MOST_FACETS)],
+    [
+        ("classic", 0.0, 1, 1),
+        ("classic", 0.001, 1, 1),
+        ("classic", 0.05, 2, MOST_FACETS),
+        ("half", 0.001, 2, MOST_FACETS),
+    ],
 )
 def test_wide_exits_get_many_facets(parametrization, alpha, least, most):
     plan, _ = prepared(Split, make_scene([dielectric(1.5, alpha), conductor(1.45, 1.0, 0.2)], 30.0, parametrization))

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from ..splitting.lobes import MOST_FACETS, facets_per_arrival
 from ..splitting.layout import PHASES
+from ..splitting.lobes import MOST_FACETS, facets_per_arrival
 from ..splitting.usual import usual_weights
 from ..splitting.workspace import Workspace, shapes
 from ..unit import DARKEST
@@ -74,4 +74,3 @@ class Split:
     def workspace(self):
         """Arrays of one thread, with ``run``."""
         return Workspace(self.plan, self.slots, self.facets, self.scales)
-

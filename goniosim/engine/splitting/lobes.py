@@ -28,7 +28,7 @@ def facets_per_arrival(plan, direction, way):
 
 
 def _cells_within(plan, direction, width):
-    """Cells around the mirror direction (or that straight through) that a lobe of half-width ``width`` covers, roughly."""
+    """Cells around the mirror direction that a lobe of half-width ``width`` covers, roughly."""
     sine, _, cosine = plan.light[direction]
     along = np.array([-cosine, 0.0, -sine])
     across = np.array([0.0, 1.0, 0.0])

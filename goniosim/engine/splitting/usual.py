@@ -1,14 +1,13 @@
 """Which weights are usual where a ray waits: what is much fainter there is not worth following.
 
-As in `goniosim.engine.faint`, but the weights of this walk differ by what the ways out share: what a clear base reflects
-is faint, and all that there is above it. Inner interfaces do not branch in the pilot, or the rays in its queues, which no
-roulette ends, would be of ever later generations.
+As in `goniosim.engine.faint`, but the weights of this walk differ by what the ways out share: what a clear base
+reflects is faint, and all that there is above it. Inner interfaces do not branch in the pilot, or the rays in its
+queues, which no roulette ends, would be of ever later generations.
 """
 
 import numpy as np
 
 from ..faint import DIM, after_medium
-from ..layout import WEIGHT
 from ..unit import BATCH, pilot_key
 from ..walk import ABOVE, BELOW
 from .layout import BASED, FRESH, LATER, LEFT, PHASES
@@ -51,7 +50,7 @@ def _usual(plan, workspace, direction):
 
 
 def _first_batches(plan, workspace, direction):
-    """Yield the queues where light comes first, and the weights (channels, rays) of the first batch that each serves."""
+    """Yield the queues where light comes first, and the weights (channels, rays) of the first batch there."""
     k = len(plan.kinds)
     waiting = {(FRESH, i, ABOVE) for i in range(1, k)} | {(FRESH, i, BELOW) for i in range(k - 2)}
     waiting |= {(BASED, i, BELOW) for i in range(k - 1)}
