@@ -88,6 +88,8 @@ def _entry(path):
             **known,
             "kind": "result",
             **{key: header[key] for key in ("name", "status", "seed", "created_utc")},
+            # Before files said so, all of them were of independent paths.
+            "estimator": header.get("estimator", "analog"),
             "rays": scene.simulation.rays,
             "theta_deg": list(scene.incident.theta_deg),
             "slice": scene.slice.model_dump(),

@@ -89,12 +89,21 @@ HEADER = (
         "be texts",
         lambda header: _are_texts(header, "config_yaml", "created_utc", "goniosim_version"),
     ),
+    Rule("estimator", "be a plain name", lambda header: is_name(header.get("estimator", "analog"))),
     Rule("an attribute of the root", "have a plain name", lambda header: all(map(is_name, header))),
 )
 
 HEADER_AND_SCENE = (
     Rule("name", "be that in config_yaml", lambda header, scene: header["name"] == scene.material.name),
     Rule("seed", "be that in config_yaml", lambda header, scene: header["seed"] == scene.simulation.seed),
+)
+
+HEADER_AND_RESULT = (
+    Rule(
+        "the attribute estimator",
+        "be that of the components",
+        lambda header, result: header.get("estimator", result.estimator) == result.estimator,
+    ),
 )
 
 # For whatever has directions, channels and cells: a result, or a material of a file of models.
