@@ -89,7 +89,9 @@ def _entry(path):
             **known,
             "kind": "result",
             **{key: header[key] for key in ("name", "status", "seed", "created_utc")},
-            **scene.simulation.model_dump(include={"rays", "target", "estimator"}),
+            # Before files said so, all of them were of independent paths.
+            "estimator": header.get("estimator", "analog"),
+            **scene.simulation.model_dump(include={"rays", "target"}),
             "theta_deg": list(scene.incident.theta_deg),
             "slice": scene.slice.model_dump(),
         }

@@ -148,6 +148,7 @@ def _result(file: h5py.File, ours: Ours, header: dict[str, Any]) -> Result:
     validation.check(validation.GEOMETRY, result, scene)
     earlier.complete(result)
     validation.check(validation.RESULT, result, scene)
+    validation.check(validation.HEADER_AND_RESULT, header, result)
     return result
 
 

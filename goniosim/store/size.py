@@ -5,8 +5,10 @@
 # Counts grow by a byte per factor 256 in the number of rays. Empty cells take next to nothing.
 _BYTES_PER_FLOAT = 7.2
 _BYTES_PER_COUNT = 2.0
+# If every other cell is uncertain, at random.
+_BYTES_PER_FLAG = 0.21
 # Measured on slices of a single cell.
-_BYTES_PER_GROUP = 7_500
+_BYTES_PER_GROUP = 12_000
 _BYTES_OF_THE_REST = 44_000
 
 
@@ -43,6 +45,6 @@ def predicted_size(
     """
     cells = directions * rows * columns
     groups = n_components + n_orders
-    slices = groups * cells * (4 * channels * _BYTES_PER_FLOAT + _BYTES_PER_COUNT)
+    slices = groups * cells * (channels * (4 * _BYTES_PER_FLOAT + _BYTES_PER_FLAG) + _BYTES_PER_COUNT)
     geometry = 0 if parametrization == "classic" else 2 * cells * _BYTES_PER_FLOAT
     return int(slices + geometry + groups * _BYTES_PER_GROUP + _BYTES_OF_THE_REST)

@@ -90,6 +90,7 @@ HEADER = (
         "be texts",
         lambda header: _are_texts(header, "config_yaml", "created_utc", "goniosim_version"),
     ),
+    Rule("estimator", "be a plain name", lambda header: is_name(header.get("estimator", "analog"))),
     Rule("an attribute of the root", "have a plain name", lambda header: all(map(is_name, header))),
 )
 
@@ -100,6 +101,14 @@ HEADER_AND_SCENE = (
         "target_reached",
         "be there only if config_yaml has a target",
         lambda header, scene: "target_reached" not in header or scene.simulation.target is not None,
+    ),
+)
+
+HEADER_AND_RESULT = (
+    Rule(
+        "the attribute estimator",
+        "be that of the components",
+        lambda header, result: header.get("estimator", result.estimator) == result.estimator,
     ),
 )
 

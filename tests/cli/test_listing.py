@@ -67,10 +67,11 @@ def test_the_table_as_json(goniosim, results):
     code, out, _ = goniosim("info", results / "again.h5", results, "--json")
     assert code == 0
     first, *rest = json.loads(out)
-    assert {key: first[key] for key in ("kind", "name", "status", "rays", "theta_deg", "seed")} == {
+    assert {key: first[key] for key in ("kind", "name", "status", "estimator", "rays", "theta_deg", "seed")} == {
         "kind": "result",
         "name": "coat-0.1",
         "status": "complete",
+        "estimator": "analog",
         "rays": 100,
         "theta_deg": [30.0],
         "seed": 1,

@@ -138,6 +138,8 @@ CASES = {
     "seed-text": (text("/", "seed", "1"), "seed must be a whole number"),
     "seed-other": (number("/", "seed", np.uint64(5)), "seed must be that in config_yaml"),
     "seed-huge": (number("/", "seed", np.uint64(2**64 - 1)), "seed must be that in config_yaml"),
+    "estimator-name": (text("/", "estimator", "\x1b[2J"), "estimator must be a plain name"),
+    "estimator-header": (text("/", "estimator", "split"), "the attribute estimator must be that of the components"),
     "hash": (text("/", "config_hash", "../x"), "config_hash must be 64 hexadecimal digits"),
     "version": (text("/", "schema_version", "one"), "schema_version must be MAJOR.MINOR"),
     "time": (number("/", "created_utc", np.int64(3)), "created_utc and goniosim_version must be texts"),

@@ -12,6 +12,7 @@ import goniosim
 from goniosim.engine.estimate import mean_and_error
 from goniosim.errors import OutputError, UnusableResultError
 from goniosim.report.simulation.figures import draw
+from goniosim.report.simulation.summary import description
 from synthetic import fill, make_result
 
 
@@ -201,3 +202,20 @@ def test_a_refused_save_leaves_nothing_behind(result, tmp_path, monkeypatch):
     with pytest.raises(OutputError, match="not a goniosim result"):
         result.save(tmp_path / "notes.h5")
     assert list(temporary.iterdir()) == []
+
+
+def test_a_result_without_hits_is_compared_and_described_as_one_with_hits(tmp_path):
+    """The same numbers by another estimator: the same error of a model, but for what batches say of its error bar."""
+    found = {}
+    for name in ("analog", "split"):
+        components = ("reflection/direct", "reflection/internal")
+        made = make_result(channels=("R", "G", "B"), components=components, estimator=name)
+        result = goniosim.open_result(made.save(tmp_path / f"{name}.h5"))
+        (found[name],) = goniosim.compare(result, models=["ww09"]).rows()
+        assert f"estimator {name}" in description(result)
+    one, other = found["analog"], found["split"]
+    assert one["rmse"] == other["rmse"] > 0.0 and one["noise_floor"] == other["noise_floor"]
+    assert 0.0 < one["rmse_stderr"] != other["rmse_stderr"] > 0.0
+    # Batches that scatter by a tenth, all cells alike.
+    expected = 0.1 * one["albedo_reference"] / 31**0.5
+    assert other["albedo_reference_stderr"] == pytest.approx(expected / 2**0.5, rel=1e-6)
