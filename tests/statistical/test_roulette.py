@@ -39,7 +39,8 @@ def test_the_error_bars_of_dark_stacks(name):
     1.6 %; weights of different size make it twice that at most. Scatter of 12 cells over 24 seeds against the stated
     bars: 5 sigma of a variance of 11 x 23 values (the chance of cells with a kurtosis up to 6: 1e-6). Roulette: 4.5
     sigma of t with 23 degrees of freedom: 2e-4. Where so few bright rays are faint that hardly one survives, the
-    scatter says nothing if none did: then at most 8.5 survivors of the greatest such weight are missing (Poisson: 2e-4).
+    scatter says nothing if none did: then at most 8.5 survivors of the greatest such weight are missing, which
+    has a chance of 2e-4 (Poisson).
     """
     layers, component = DARK[name]
     energy, stderr, lost = many(layers, component)
