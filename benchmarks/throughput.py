@@ -1,6 +1,6 @@
 """Throughput of the analog estimator: rays per CPU-second on three stacks at three angles.
 
-    python benchmarks/throughput.py [--rays 2e6] [--peer PATH] [--repeat 9]
+    python benchmarks/throughput.py [--rays 8e6] [--peer PATH] [--repeat 9]
 
 Prints one table: goniosim, the slow one-ray-at-a-time reference tracer of the tests, and, with
 ``--peer``, a C++ goniometer that traces one ray at a time (an executable that takes
@@ -101,7 +101,7 @@ def peer_rate(program, name, theta, rays):
 def main():
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rays", type=float, default=2e6, help="rays per measurement of goniosim")
+    parser.add_argument("--rays", type=float, default=8e6, help="rays per measurement of goniosim")
     parser.add_argument("--repeat", type=int, default=9)
     parser.add_argument("--peer", help="executable of a C++ goniometer to compare with")
     options = parser.parse_args()

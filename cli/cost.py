@@ -1,37 +1,17 @@
 """`goniosim cost`: what accuracy costs in time."""
 
-import re
-
 import click
 
-from .options import PATH, overrides_of, set_option
+from .options import PATH, Quantity, overrides_of, set_option
 from .policy import debug_option, say
 from .signals import tidied_up
-
-SECONDS = {"s": 1.0, "m": 60.0, "min": 60.0, "h": 3600.0}
-
-
-class Duration(click.ParamType):
-    """A time such as ``90s``, ``10m`` or ``1h``; a plain number is seconds."""
-
-    name = "time"
-
-    def convert(self, value, param, ctx):
-        """Return seconds."""
-        if isinstance(value, float):
-            return value
-        match = re.fullmatch(r"(\d+(?:\.\d*)?|\.\d+)\s*(s|m|min|h)?", value.strip())
-        if match is None or float(match[1]) <= 0.0:
-            self.fail(f"{value!r} is not a time such as 90s, 10m or 1h", param, ctx)
-        return float(match[1]) * SECONDS[match[2] or "s"]
-
 
 @click.command()
 @click.argument("config", type=PATH)
 @click.option("-o", "--output", type=PATH, metavar="FOLDER", help="Folder for the figures [default: here].")
 @click.option(
     "--max-time",
-    type=Duration(),
+    type=Quantity("time", "TimeSpan"),
     default="60s",
     show_default=True,
     metavar="TIME",
@@ -62,9 +42,9 @@ def cost(config, output, max_time, models, threads, overrides, as_json):
     from goniosim.errors import ConfigError
     from goniosim.report.cost import summary
     from goniosim.report.cost.price_list import price_list
-    from goniosim.scene import load_config
+    from goniosim.scene import load_config, target
 
-    scenes = load_config(config, [*overrides, *overrides_of(threads=threads)]).scenes
+    scenes = load_config(config, [*overrides, *overrides_of({"threads": threads})]).scenes
     if len(scenes) > 1:
         raise ConfigError(f"{config}: describes {len(scenes)} materials, and a price list is of one; give a scene file")
     (scene,) = scenes
@@ -73,7 +53,7 @@ def cost(config, output, max_time, models, threads, overrides, as_json):
     if stem is not None:
         _require_room(stem)
     with tidied_up():
-        made = price_list(scene, max_time, models, lambda message: say(f"{scene.material.name}: {message}", err=True))
+        made = price_list(scene, target.TimeSpan().check(max_time), models, lambda message: say(f"{scene.material.name}: {message}", err=True))
         paths = [] if stem is None else _draw(stem, made)
     if as_json:
         click.echo(json.dumps(summary.as_data(made), indent=1, allow_nan=False))

@@ -79,7 +79,7 @@ def simulate(
       incident theta [deg]: 0, 60
       classic slices of 9 x 36 cells, channels R, G, B
       rays per direction: 1e4, seed 1
-      mean albedo: reflection/direct 0.05577, reflection/internal 0.2559 ± 0.0013>
+      mean albedo: reflection/direct 0.05577, reflection/internal 0.2567 ± 0.0013>
     """
     given = {
         "rays": rays,

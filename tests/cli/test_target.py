@@ -83,19 +83,6 @@ def test_what_does_not_go_together(goniosim, folder, command, line, code, said):
     assert not (folder / "small.h5").exists()
 
 
-@pytest.mark.parametrize(
-    "line, said",
-    [
-        ("--target 1%", "simulation.target: is not available yet: give rays instead"),
-        ("--estimator split", "simulation.estimator: split is not available yet: use auto or analog"),
-    ],
-)
-def test_what_the_engine_cannot_do(goniosim, folder, line, said):
-    code, _, err = call(goniosim, line)
-    assert (code, err.splitlines()) == (3, [said, "goniosim: error: 1 mistake"])
-    assert not (folder / "small.h5").exists()
-
-
 def test_a_target_that_is_missed_is_9_and_the_result_is_kept(goniosim, folder, aimed):
     aimed["missed"].add("small")
     code, out, err = call(goniosim, f"--target {TIMES}")

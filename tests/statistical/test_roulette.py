@@ -38,7 +38,9 @@ def test_the_error_bars_of_dark_stacks(name):
     A ray in ten or more reaches the component, so that with equal weights its energy is known to sqrt(10 / 40000) =
     1.6 %; weights of different size make it twice that at most. Scatter of 12 cells over 24 seeds against the stated
     bars: 5 sigma of a variance of 11 x 23 values (the chance of cells with a kurtosis up to 6: 1e-6). Roulette: 4.5
-    sigma of t with 23 degrees of freedom: 2e-4.
+    sigma of t with 23 degrees of freedom: 2e-4. Where so few bright rays are faint that hardly one survives, the
+    scatter says nothing if none did: then at most 8.5 survivors of the greatest such weight are missing, which
+    has a chance of 2e-4 (Poisson).
     """
     layers, component = DARK[name]
     energy, stderr, lost = many(layers, component)
@@ -47,7 +49,9 @@ def test_the_error_bars_of_dark_stacks(name):
     assert total.std(ddof=1) < 0.032 * total.mean()
     ratio = energy.var(axis=0, ddof=1).sum() / (stderr**2).mean(axis=0).sum()
     assert ratio == pytest.approx(1.0, abs=5.0 * (5.0 / (11 * 23)) ** 0.5)
-    assert abs(lost.mean()) <= 4.5 * lost.std(ddof=1) / SEEDS**0.5
+    survivor = faint_weights(make_plan(make_scene(layers, 30.0, rows=3, columns=4))).max()
+    missing = SEEDS * RAYS * lost.mean() / survivor
+    assert abs(lost.mean()) <= 4.5 * lost.std(ddof=1) / SEEDS**0.5 or 0.0 < missing < 8.5
 
 
 def test_a_dark_plastic_agrees_with_its_closed_form():

@@ -241,17 +241,6 @@ def test_rays_as_an_argument_end_limits_too():
     ]
 
 
-@pytest.mark.parametrize(
-    "given, line",
-    [
-        ({"target": 0.01}, "simulation.target: is not available yet: give rays instead"),
-        ({"estimator": "split"}, "simulation.estimator: split is not available yet: use auto or analog"),
-    ],
-)
-def test_what_the_engine_cannot_do_is_refused(given, line):
-    assert problems_of(SCENE, call=goniosim.simulate, **given) == [line]
-
-
 def test_options_of_the_command_line_know_the_words_of_the_scene():
     """They are written there again, so that help needs nothing of the scene."""
     from goniosim.scene.checking import CHOICES

@@ -63,11 +63,7 @@ def run(scene, estimator, rays, seed=None, threads=None):
     start, cpu_start = time.perf_counter(), time.process_time()
     result = simulate(asked(scene, estimator, rays), seed=seed, threads=threads)
     elapsed, cpu_elapsed = time.perf_counter() - start, time.process_time() - cpu_start
-    directions = len(result.theta_deg)
-    # The engine counts all directions together.
-    seconds, cpu_seconds = (
-        np.full(directions, last / directions) for last in (result.cost.seconds[-1], result.cost.cpu_seconds[-1])
-    )
+    seconds, cpu_seconds = result.cost.seconds[:, -1], result.cost.cpu_seconds[:, -1]
     found = sampled(result)
     return Run(
         rays=result.rays.astype(float),
@@ -77,14 +73,15 @@ def run(scene, estimator, rays, seed=None, threads=None):
         cpu_overhead=max(cpu_elapsed - cpu_seconds.sum(), 0.0),
         noise={name: noise_of(component, result.cells) for name, component in found.items()},
         norm={name: norm_of(component, result.cells) for name, component in found.items()},
-        estimators={name: ["analog"] * directions for name in found},
+        estimators={name: component.estimator for name, component in found.items()},
         result=result,
     )
 
 
 def asked(scene, estimator, rays):
-    """The scene with so many rays, by an estimator: the one that there is."""
-    return scene.model_copy(update={"simulation": scene.simulation.model_copy(update={"rays": rays})})
+    """The scene with so many rays, by an estimator."""
+    given = {"rays": rays, "target": None, "max_rays": None, "max_time": None, "estimator": estimator}
+    return scene.model_copy(update={"simulation": scene.simulation.model_copy(update=given)})
 
 
 def sampled(result):
