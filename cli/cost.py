@@ -6,6 +6,7 @@ from .options import PATH, Quantity, overrides_of, set_option
 from .policy import debug_option, say
 from .signals import tidied_up
 
+
 @click.command()
 @click.argument("config", type=PATH)
 @click.option("-o", "--output", type=PATH, metavar="FOLDER", help="Folder for the figures [default: here].")
@@ -53,7 +54,12 @@ def cost(config, output, max_time, models, threads, overrides, as_json):
     if stem is not None:
         _require_room(stem)
     with tidied_up():
-        made = price_list(scene, target.TimeSpan().check(max_time), models, lambda message: say(f"{scene.material.name}: {message}", err=True))
+        made = price_list(
+            scene,
+            target.TimeSpan().check(max_time),
+            models,
+            lambda message: say(f"{scene.material.name}: {message}", err=True),
+        )
         paths = [] if stem is None else _draw(stem, made)
     if as_json:
         click.echo(json.dumps(summary.as_data(made), indent=1, allow_nan=False))

@@ -1,4 +1,4 @@
-"""An estimator of replicates for tests: the analog walk, whose histograms are folded and all but their means forgotten."""
+"""An estimator of replicates for tests: the analog walk, whose histograms are folded, all but their means forgotten."""
 
 import numpy as np
 

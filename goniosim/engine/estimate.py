@@ -134,7 +134,7 @@ def assemble(plan, estimates, estimator, contains_delta):
     ----------
     plan : Plan
     estimates : iterable of Estimate
-        One for each direction; a generator: of fine slices, only those of one direction are in memory besides the result.
+        One for each direction; a generator: of fine slices, those of one direction are in memory besides the result.
     estimator : str
     contains_delta : bool
 

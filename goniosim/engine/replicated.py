@@ -146,10 +146,10 @@ class ReplicatedRun:
         self.spending.book(work.direction, report.events, report.cpu_seconds + time.thread_time() - start)
 
     def _see_bias(self, direction, coarse):
-        """The nodes' bias is of the fourth order in their distance: a fifteenth of what twice the distance changes."""
+        """What twice the distance of the nodes changes: more than their bias, which falls with a power of it."""
         # The nodes serve one way out.
         change = (coarse.mean(axis=0) - self._first.pop(direction)).sum(axis=0)
-        self.bias[direction] = noise(self._plan, direction, unfold(change, self._plan.columns)) / 15.0
+        self.bias[direction] = noise(self._plan, direction, unfold(change, self._plan.columns))
 
     def finish_round(self, direction):
         """Add a round up, or what there is of it."""

@@ -43,7 +43,7 @@ def _blocks(cells):
 def plastic_cells(thetas, parametrization, rays, seed):
     """Chi-squares of an absorbing smooth coat over a Lambertian base."""
     scene = make_scene([dielectric(1.5), medium(0.2), lambert(0.5)], thetas, parametrization)
-    energies = simulate(scene, rays=rays, seed=seed).components["reflection/internal"].energy
+    energies = simulate(scene, rays=rays, seed=seed, estimator="analog").components["reflection/internal"].energy
     return _chi_squares(energies, lambda power: plastic_density(1.5, 0.5, 0.2, power), thetas, parametrization, rays)
 
 
@@ -56,7 +56,7 @@ def conductor_cells(alpha, thetas, parametrization, rays, seed):
     """
     layers = [dielectric(1.0), conductor(1.45, 1.0, alpha)]
     scene = make_scene(layers, thetas, parametrization)
-    energies = simulate(scene, rays=rays, seed=seed).components["reflection/internal"].energy
+    energies = simulate(scene, rays=rays, seed=seed, estimator="analog").components["reflection/internal"].energy
     return _chi_squares(
         energies, lambda power: reflection_density(alpha, 1.45 + 1.0j, power), thetas, parametrization, rays
     )
@@ -65,7 +65,7 @@ def conductor_cells(alpha, thetas, parametrization, rays, seed):
 def transmission_cells(alpha, eta, thetas, rays, seed):
     """Chi-squares of the light refracted by one rough interface."""
     scene = make_scene([dielectric(eta, alpha)], thetas)
-    energies = simulate(scene, rays=rays, seed=seed).components["transmission"].energy
+    energies = simulate(scene, rays=rays, seed=seed, estimator="analog").components["transmission"].energy
     return _chi_squares(energies, lambda power: transmission_density(alpha, eta, power), thetas, "classic", rays)
 
 
@@ -85,7 +85,7 @@ def direct_cells(top, density, thetas, parametrization, rows=90, columns=360):
 def many_seeds(layers, theta, component, parametrization, rays, seeds, rows=30, columns=60):
     """Energy, standard error and hits of one component for many seeds, seeds first."""
     scene = make_scene(layers, theta, parametrization, rows, columns)
-    found = [simulate(scene, rays=rays, seed=seed).components[component] for seed in range(seeds)]
+    found = [simulate(scene, rays=rays, seed=seed, estimator="analog").components[component] for seed in range(seeds)]
     return tuple(np.array([getattr(c, name)[0] for c in found]) for name in ("energy", "stderr", "hits"))
 
 
@@ -96,7 +96,7 @@ def exchange_deviations(layers, component, thetas, rays, seed, rows=90, columns=
     columns are the same difference of azimuth in both. The angles must be centres of rows, so
     that the averages over a row's theta_v agree with the exact theta of the light to second order.
     """
-    result = simulate(make_scene(layers, thetas, "classic", rows, columns), rays=rays, seed=seed)
+    result = simulate(make_scene(layers, thetas, "classic", rows, columns), rays=rays, seed=seed, estimator="analog")
     found = result.components[component]
     row = [int(theta * rows / 90.0) for theta in thetas]
     z = []
@@ -121,7 +121,7 @@ def tracer_deviations(layers, theta, parametrization, rays, tracer_rays, orders=
     result : goniosim.result.Result
     """
     scene = make_scene(layers, theta, parametrization, rows, columns, orders=orders)
-    result = simulate(scene, rays=rays, seed=3)
+    result = simulate(scene, rays=rays, seed=3, estimator="analog")
     slow = trace(stack_from_scene(scene), theta, tracer_rays, 4, rows, columns, parametrization, orders + 1)
     # Both follow the same law, and the engine's many rays know its width better.
     widened = np.sqrt(1.0 + rays / tracer_rays)

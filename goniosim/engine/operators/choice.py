@@ -14,6 +14,8 @@ LEAST_CONTRAST = 0.15
 # A reflected lobe is wider. Above NARROW the exit's own operator is as good, and cheaper.
 WIDE_REFLECTION = 0.05
 NARROW = 0.1
+# Towards grazing a reflected lobe varies faster than the nodes are apart: at 75 degrees one of width .05 does not yet.
+MOST_SINE = 0.966
 
 # What the light does after its last arrival at the interface: leave; or be reflected towards the exit, which is then
 # sampled from the cells, or is wide and an operator too.
@@ -59,7 +61,12 @@ def choose(plan, side):
     leaving = 0 if side == UP else last
     other = last - leaving
     wide = _transmits_widely(plan, leaving)
-    if last == 1 and side == UP and _reflects_widely(plan, other) and plan.alphas[leaving] < NARROW:
+    if last == 0:
+        return "operators take light that has been inside, and there is a single interface"
+    if last == 1 and side == UP and _graze(plan) and _reflects_widely(plan, other) and not wide:
+        return "light arrives at the base at grazing angles, where nodes are too far apart"
+    reflects = last == 1 and side == UP and not _graze(plan) and _reflects_widely(plan, other)
+    if reflects and plan.alphas[leaving] < NARROW:
         return Variant(other, leaving, THROUGH if wide else IN, from_below=False)
     if wide:
         return Variant(leaving, leaving, OUT, from_below=side == UP)
@@ -71,6 +78,11 @@ def choose(plan, side):
         f"or has an index within {LEAST_CONTRAST:.0%} of its neighbour's"
         + (", and the other interface is narrow as well" if last == 1 else "")
     )
+
+
+def _graze(plan):
+    """Whether some light that is refracted by the mean top interface meets the next one at a grazing angle."""
+    return bool((plan.light[:, 0] > MOST_SINE * float(plan.etas[0])).any())
 
 
 def _transmits_widely(plan, interface):

@@ -6,9 +6,9 @@ from ...optics.ggx import smith_g1
 from ...optics.lambert import sample_cosine
 from ..layout import WEIGHT, X, Y, Z
 from ..stages import LAMBERT, ROUGH_CONDUCTOR
-from .facets import draw_facets
 from ..stages.lambert import RHO
 from ..stages.smooth_conductor import ETA, KAPPA
+from .facets import draw_facets
 from .layout import (
     BACK_GAIN,
     BACK_X,
