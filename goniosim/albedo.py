@@ -33,8 +33,9 @@ def albedo(result: Result, name: str | None = None) -> tuple[np.ndarray, np.ndar
     value, variance = np.zeros(shape), np.zeros(shape)
     parts = list(chosen.values())
     if DIRECT in chosen:
-        value += chosen[DIRECT].albedo
-        variance += chosen[DIRECT].albedo_stderr ** 2
+        energy, stderr = _sum_of(chosen[DIRECT])
+        value += energy
+        variance += stderr**2
         parts.remove(chosen[DIRECT])
     if parts:
         energy, stderr = _sampled(parts, result.rays)
@@ -46,17 +47,24 @@ def albedo(result: Result, name: str | None = None) -> tuple[np.ndarray, np.ndar
 def arrived(component: Component) -> np.ndarray:
     """Whether anything of a sampled component was seen, shape (M, C); a path may have nothing left in a channel."""
     if component.hits is None:
-        return component.energy.any(axis=(2, 3))
-    return np.broadcast_to(component.hits.any(axis=(1, 2))[:, None], component.energy.shape[:2])
+        return np.asarray(component.energy.any(axis=(2, 3)))
+    return np.broadcast_to(np.asarray(component.hits.any(axis=(1, 2)))[:, None], component.energy.shape[:2])
+
+
+def _sum_of(component: Component) -> tuple[np.ndarray, np.ndarray]:
+    """Sum over the cells, and its standard error."""
+    if component.albedo is None or component.albedo_stderr is None:
+        raise TypeError("the component of a model, which has no noise, has no albedo with an error")
+    return component.albedo, component.albedo_stderr
 
 
 def _sampled(parts: list[Component], rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Sum of sampled components, none in another, and its standard error; NaN where no ray was traced."""
-    energy = np.sum([part.albedo for part in parts], axis=0)
-    variance = np.sum([part.albedo_stderr**2 for part in parts], axis=0)
+    energy = np.sum([_sum_of(part)[0] for part in parts], axis=0)
+    variance = np.sum([_sum_of(part)[1] ** 2 for part in parts], axis=0)
     if len(parts) == 2:
         for direction, n in enumerate(rays):
-            variance[direction] += _covariance(*parts, direction, int(n))
+            variance[direction] += _covariance(parts[0], parts[1], direction, int(n))
     n = rays[:, None]
     seen = np.any([arrived(part) for part in parts], axis=0)
     stderr = np.where(seen, np.sqrt(np.maximum(variance, 0.0)), UNSEEN / np.maximum(n, 1))
@@ -65,16 +73,17 @@ def _sampled(parts: list[Component], rays: np.ndarray) -> tuple[np.ndarray, np.n
 
 def _covariance(one: Component, other: Component, direction: int, rays: int) -> np.ndarray:
     """Twice the covariance of the sums of two components that may share their paths, shape (C,)."""
+    (value, stderr), (other_value, other_stderr) = _sum_of(one), _sum_of(other)
     analog = [part.estimator[direction] == "analog" for part in (one, other)]
     if all(analog):
-        return -2.0 * one.albedo[direction] * other.albedo[direction] / max(rays - 1, 1)
+        return np.asarray(-2.0 * value[direction] * other_value[direction] / max(rays - 1, 1))
     if any(analog):
         # Each has a run of its own.
         return np.zeros(one.energy.shape[1])
     if one.batches is None or other.batches is None:
-        return 2.0 * one.albedo_stderr[direction] * other.albedo_stderr[direction]
-    a, b = (part.batches[direction].sum(axis=(-2, -1)) for part in (one, other))
-    return 2.0 * ((a - a.mean(axis=0)) * (b - b.mean(axis=0))).sum(axis=0) / (len(a) * (len(a) - 1.0))
+        return np.asarray(2.0 * stderr[direction] * other_stderr[direction])
+    a, b = (batches[direction].sum(axis=(-2, -1)) for batches in (one.batches, other.batches))
+    return np.asarray(2.0 * ((a - a.mean(axis=0)) * (b - b.mean(axis=0))).sum(axis=0) / (len(a) * (len(a) - 1.0)))
 
 
 def _chosen(result: Result, name: str | None) -> dict[str, Component]:

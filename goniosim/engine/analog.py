@@ -65,20 +65,16 @@ class AnalogRun:
         self._faint = faint_weights(self._plan)
         self.spending.share(time.thread_time() - start)
 
-    def works(self, rays, directions=None):
-        """Work units of so many further rays of each of some directions.
+    @property
+    def gathered(self):
+        """Whether there is something to keep."""
+        return any(self._units)
 
-        Parameters
-        ----------
-        rays : int
-        directions : list of int, optional
-            All by default.
+    def rounds(self, rays):
+        """Work units of so many rays of each direction, in a single round: lists of Work."""
+        return [self._works(rays, range(len(self.tallies)))]
 
-        Returns
-        -------
-        list of Work
-        """
-        chosen = range(len(self.tallies)) if directions is None else directions
+    def _works(self, rays, chosen):
         schedule = Schedule(len(chosen), rays)
         checkpoints = set(schedule.checkpoints)
         made = []
@@ -94,7 +90,7 @@ class AnalogRun:
 
     def round(self, number, directions):
         """Work units of such a round."""
-        return self.works(self.rays_of_round(number), directions)
+        return self._works(self.rays_of_round(number), directions)
 
     def buffer(self):
         """What a piece of work fills."""

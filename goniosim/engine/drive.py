@@ -33,21 +33,58 @@ class Drive:
         """Whether somebody asked to stop."""
         return self._stop.is_set()
 
+    def now(self):
+        """Seconds since the beginning."""
+        return time.perf_counter() - self._started
+
     def expect(self, rays):
         """So many rays are to come, over all runs and directions, besides those that are through."""
         self._total_rays = self._done + rays
 
-    def shoot(self, run, rays, note=None):
-        """Do a run of so many rays from every direction.
+    def do(self, run, works, note=None, stop=None):
+        """Do pieces of work of a run.
 
         Parameters
         ----------
         run : AnalogRun or ReplicatedRun
-        rays : int
+        works : list of goniosim.engine.runs.Work
         note : callable, optional
             Called as ``note(run, direction)`` at every checkpoint.
+        stop : threading.Event, optional
+            In the place of the drive's own.
         """
-        self._do(run, run.works(rays), note)
+        stop = stop or self._stop
+        local = threading.local()
+        buffers = [run.buffer() for _ in range(min(self._threads + WAITING, len(works)))]
+
+        def work(one, buffer):
+            if stop.is_set():
+                return None
+            if not hasattr(local, "workspace"):
+                local.workspace = run.workspace()
+            return run.work(one, buffer, local.workspace, stop)
+
+        noted = set()
+
+        def reduce(one, outcome, buffer):
+            run.reduce(one, outcome, buffer)
+            if outcome is not None and not one.coarse:
+                self._done += one.rays
+            self.seconds = time.perf_counter() - self._started
+            if one.last and not stop.is_set():
+                _finish(run, one.direction, note)
+                noted.add(one.direction)
+            elif outcome is not None:
+                noted.discard(one.direction)
+
+        def tick():
+            # From the first call on there is something to keep.
+            if run.gathered:
+                self._progress(self._done, max(self._total_rays, self._done))
+
+        in_order(works, work, buffers, reduce, self._threads, stop, tick)
+        for direction in sorted({one.direction for one in works} - noted):
+            _finish(run, direction, note)
 
     def reach(self, run, directions, reached, limit, note):
         """Do rounds of a run, in each direction until it is as accurate as asked for.
@@ -60,7 +97,7 @@ class Drive:
             ``reached(run, direction)``.
         limit : Limit
         note : callable
-            As for `shoot`.
+            As for `do`.
 
         Returns
         -------
@@ -71,48 +108,17 @@ class Drive:
         while left and not self._stop.is_set() and limit.allows(run, left, number):
             started = time.perf_counter()
             self.expect(len(left) * run.rays_of_round(number))
-            self._do(run, run.round(number, left), note)
+            self.do(run, run.round(number, left), note)
             limit.took(time.perf_counter() - started)
             left = [m for m in left if not reached(run, m)]
             number += 1
         return left
 
-    def _do(self, run, works, note):
-        local = threading.local()
-        buffers = [run.buffer() for _ in range(min(self._threads + WAITING, len(works)))]
 
-        def work(one, buffer):
-            if self._stop.is_set():
-                return None
-            if not hasattr(local, "workspace"):
-                local.workspace = run.workspace()
-            return run.work(one, buffer, local.workspace, self._stop)
-
-        noted = set()
-
-        def reduce(one, outcome, buffer):
-            run.reduce(one, outcome, buffer)
-            if outcome is not None and not one.coarse:
-                self._done += one.rays
-            self.seconds = time.perf_counter() - self._started
-            if one.last and not self._stop.is_set():
-                self._finish(run, one.direction, note)
-                noted.add(one.direction)
-            elif outcome is not None:
-                noted.discard(one.direction)
-
-        def tick():
-            self._progress(self._done, max(self._total_rays, self._done))
-
-        in_order(works, work, buffers, reduce, self._threads, self._stop, tick)
-        for direction in sorted({one.direction for one in works} - noted):
-            self._finish(run, direction, note)
-
-    @staticmethod
-    def _finish(run, direction, note):
-        run.finish_round(direction)
-        if note is not None and run.rays[direction]:
-            note(run, direction)
+def _finish(run, direction, note):
+    run.finish_round(direction)
+    if note is not None and run.rays[direction]:
+        note(run, direction)
 
 
 class Limit:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from ..cores import available_cores
 from ..errors import ResourceError
 from ..free_memory import free_memory, resident_memory
+from ..sums import BATCHES, BLOCKS
 from .drive import WAITING
 from .estimators import ESTIMATORS
 from .estimators.choose import ANALOG, choose
@@ -172,7 +173,11 @@ def _of_replicates(plan, choice, threads):
     slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
     views = slots + (len(choice.sides) if plan.orders else 0)
     replicate = plan.n_distinct * plan.rows * plan.width * _NUMBER
+    blocks = BATCHES * len(plan.position) * min(plan.rows, BLOCKS[0]) * min(plan.columns, BLOCKS[1])
+    held = len(plan.theta_deg) * views * blocks * _NUMBER
     return {
+        "result": held,
+        "file": int(_WRITTEN * held),
         # Mean and variance of what is finished, of the round at work, and the effective number.
         "tallies": len(plan.theta_deg) * views * 5 * replicate,
         "threads": (threads + WAITING) * estimator.chunk * slots * replicate + threads * workspace,

@@ -75,12 +75,14 @@ class ReplicatedRun:
         self._estimator.prepare()
         self.spending.share(time.thread_time() - start)
 
-    def works(self, rays):
-        """Pieces of work of so many light paths of each direction, or a few more."""
-        made = []
-        for size in sizes(rays):
-            made += self._round(size, range(len(self._sums)))
-        return made
+    @property
+    def gathered(self):
+        """Whether there is something to keep of every direction."""
+        return all(sums.gathered for sums in self._sums)
+
+    def rounds(self, rays):
+        """Pieces of work of so many light paths of each direction, or a few more, by rounds: lists of Work."""
+        return [self._round(size, range(len(self._sums))) for size in sizes(rays)]
 
     def rays_of_round(self, number):
         """Light paths of a direction in a round of a run that stops at an accuracy."""

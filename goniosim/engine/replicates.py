@@ -53,6 +53,11 @@ class Replicates:
         """Sum of the weights of the finished rounds."""
         return self._cells.weight
 
+    @property
+    def gathered(self):
+        """Whether there would be something to keep."""
+        return self.weight > 0.0 or self._round.count >= 2
+
     def add(self, number, size, slots):
         """Take in the ``number``-th replicate of a round.
 

@@ -10,6 +10,7 @@ FEWEST_UNITS = 16
 MOST_LEDGERS = 2048
 # Rays of the analog run that tells the energy balance where slices come from replicates.
 AUDIT_RAYS = 1 << 18
+LEAST_AUDIT_RAYS = 1 << 12
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,7 @@
 """All runs of one simulation: which estimators, in which order, and how far."""
 
+import itertools
+import threading
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -11,7 +13,7 @@ from .drive import Drive, Limit
 from .estimators import pilot
 from .estimators.choose import ANALOG, AUTO, Choice, choose
 from .plan import Plan
-from .schedule import AUDIT_RAYS
+from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 
 
 @dataclass
@@ -40,7 +42,8 @@ class Session:
     runs: list = field(default_factory=list)
     audit: AnalogRun | None = None
     reached: bool | None = None
-    _began: float = 0.0
+    _spent: dict = field(default_factory=dict)
+    _from: float = 0.0
 
     @property
     def rays(self):
@@ -49,8 +52,9 @@ class Session:
 
     @property
     def finished(self):
-        """Whether everything was done that was begun."""
-        return all(run.finished for run in self.runs) and not self.drive.stopped
+        """Whether nothing is missing that was asked for, but for the limits of a target."""
+        cut = self.reached is False and self.drive.stopped
+        return all(run.finished for run in self.runs) and not cut
 
     @property
     def reasons(self):
@@ -64,25 +68,44 @@ class Session:
         if asked.target is not None and asked.estimator == AUTO and self.choices[0].sides:
             self._reconsider()
         self.runs = [choice.start(self.plan, asked.seed) for choice in self.choices]
-        self.audit = next((run for run in self.runs if run.audits), None)
-        apart = self.audit is None
-        if apart:
-            self.audit = AnalogRun(self.plan.in_one_cell(), asked.seed)
-        audit_rays = min(asked.most_rays, AUDIT_RAYS) if apart else 0
-        directions = len(self.plan.theta_deg)
-        self.drive.expect(directions * (audit_rays + len(self.runs) * (asked.rays or 0)))
-        if apart:
-            self.audit.prepare()
-            self.drive.shoot(self.audit, audit_rays)
-        if asked.target is not None:
-            self.reached = True
+        directions = range(len(self.plan.theta_deg))
+        if asked.target is None:
+            self.drive.expect(len(directions) * len(self.runs) * asked.rays)
+            self._shoot(asked.rays)
+        else:
+            met, left = partial(self._meets, asked.target), []
+            for run in self.runs:
+                self._begin(run)
+                self._from = self.drive.now() - self._spent[run]
+                left += self.drive.reach(run, directions, met, limit, self._note)
+            self.reached = not left
+        self.audit = next((run for run in self.runs if run.audits), None) or self._audited()
+
+    def _begin(self, run):
+        began = self.drive.now()
+        run.prepare()
+        self._spent[run] = self.drive.now() - began
+
+    def _shoot(self, rays):
+        """Do all runs, round by round, so that an interruption leaves something of every component."""
         for run in self.runs:
-            self._began = self.drive.seconds
-            run.prepare()
-            if asked.target is None:
-                self.drive.shoot(run, asked.rays, self._note)
-            elif self.drive.reach(run, range(directions), partial(self._meets, asked.target), limit, self._note):
-                self.reached = False
+            self._begin(run)
+        for rounds in itertools.zip_longest(*(run.rounds(rays) for run in self.runs), fillvalue=()):
+            for run, works in zip(self.runs, rounds, strict=True):
+                began = self.drive.now()
+                self._from = began - self._spent[run]
+                if works:
+                    self.drive.do(run, works, self._note)
+                self._spent[run] += self.drive.now() - began
+
+    def _audited(self):
+        """Where all energy goes, by an analog run that has no slices; short, if somebody waits for an end."""
+        run = AnalogRun(self.plan.in_one_cell(), self.simulation.seed)
+        run.prepare()
+        rays = LEAST_AUDIT_RAYS if self.drive.stopped else AUDIT_RAYS
+        for works in run.rounds(min(self.simulation.most_rays, rays)):
+            self.drive.do(run, works, stop=threading.Event())
+        return run
 
     def _reconsider(self):
         """Take the analog walk where it is through before others have begun."""
@@ -92,7 +115,7 @@ class Session:
             self.choices = [Choice(ANALOG, sides, f"a pilot says that {rays.max():.1g} rays are enough")]
 
     def _note(self, run, direction):
-        seconds = self.drive.seconds - self._began
+        seconds = self.drive.now() - self._from
         run.spending.note(direction, run.rays[direction], seconds, assembly.errors(self.plan, run, direction))
 
     def _meets(self, target, run, direction):

@@ -150,15 +150,8 @@ GEOMETRY = (
 RESULT = (
     Rule(
         "incident/rays",
-        "be those in config_yaml, or fewer if status is partial or a target decides",
-        lambda result, scene: (
-            (result.rays <= scene.simulation.most_rays).all()
-            and (
-                result.status == "partial"
-                or scene.simulation.target is not None
-                or (result.rays == scene.simulation.rays).all()
-            )
-        ),
+        "be those in config_yaml, more of other estimators than analog, or fewer if status is partial or a target decides",
+        lambda result, scene: _are_asked_for(result, scene.simulation),
     ),
     Rule(
         "reflection and transmission",
@@ -285,6 +278,14 @@ def _parts(result: Any) -> Iterator[tuple[str, Any]]:
     for name, component in result.components.items():
         yield name, component
         yield from ((f"{name}/{order}", part) for order, part in component.orders.items())
+
+
+def _are_asked_for(result: Any, asked: Any) -> bool:
+    """Whether the rays are those of the scene; replicates of equal size may need some more."""
+    independent = result.estimator in ("analog", INTEGRATED)
+    if independent and (result.rays > asked.most_rays).any():
+        return False
+    return result.status == "partial" or asked.target is not None or bool((result.rays >= asked.rays).all())
 
 
 def _are_batches(part: Any) -> bool:

@@ -25,9 +25,12 @@ def shot(run, threads=2, rays=RAYS, stop=None):
     """The run, done."""
     run.prepare()
     drive = Drive(threads, stop or threading.Event(), lambda done, total: None)
-    drive.shoot(
-        run, rays, lambda run, m: run.spending.note(m, run.rays[m], drive.seconds, assembly.errors(run._plan, run, m))
-    )
+
+    def note(run, m):
+        run.spending.note(m, run.rays[m], drive.now(), assembly.errors(run._plan, run, m))
+
+    for works in run.rounds(rays):
+        drive.do(run, works, note)
     return run
 
 

@@ -71,6 +71,8 @@ class Counted:
     def rays(self):
         return [100 * ((1 << rounds) - 1) for rounds in self.rounds]
 
+    gathered = True
+
     def rays_of_round(self, number):
         return 100 << number
 

@@ -4,13 +4,15 @@ Made-up replicates whose cells hang together in known ways, as those of real est
 deviation to 6.5 %, and 4.5 of these, 29 %, are exceeded once in 1.5e5 times.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from goniosim.compare.counts import Counts
 from goniosim.compare.measures import measure, rmse
 from goniosim.effective import FEWEST, effective_count, uncertain
-from goniosim.engine.estimate import direction_noise, mean_and_error, shared_seconds
+from goniosim.engine.estimate import mean_and_error, noise, shared_seconds
 from goniosim.result import Cells, Component
 from goniosim.sums import BATCHES, Batches, Paths, block_sums, sum_and_error
 
@@ -204,5 +206,6 @@ def test_elapsed_time_is_shared_out_as_processor_time_is():
 
 def test_the_noise_of_a_direction_is_that_of_its_errors():
     geometry = type("Geometry", (), {"valid": SIZE > 0.0, "projected_solid_angle": SIZE})
+    plan = SimpleNamespace(geometry=[None, geometry], position=[0, 1], n_distinct=2)
     stderr = np.stack([SIZE, 2.0 * SIZE])
-    assert direction_noise(stderr, geometry, np.array([0.5, 0.5])) == pytest.approx(1.5 * np.pi**0.5, rel=1e-12)
+    assert noise(plan, 1, stderr) == pytest.approx(1.5 * np.pi**0.5, rel=1e-12)

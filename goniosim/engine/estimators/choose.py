@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from ...errors import ConfigError
 from ..analog import AnalogRun
 from ..layout import DOWN, UP
+from ..plan import make_plan
 from ..replicated import ReplicatedRun
 from ..rounds import FEWEST_PATHS
 from . import ESTIMATORS
@@ -85,13 +86,27 @@ def choose(plan, name, rays):
     return sorted(made, key=lambda choice: choice.sides)
 
 
+def estimators_of(scene):
+    """Which estimator serves which component of a scene, and why; without what a pilot of a target may say.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene
+
+    Returns
+    -------
+    list of str
+    """
+    return [str(choice) for choice in choose(make_plan(scene), scene.simulation.estimator, scene.simulation.rays)]
+
+
 def _best(plan, side):
     """The first that applies, in the order of their gains, and why not those before it."""
     refused = []
     for name, estimator in ESTIMATORS.items():
         reason = estimator.refusal(plan, (side,))
         if reason is None:
-            return name, "; ".join(refused) or "applies"
+            return name, "; ".join(refused) or "the best for this stack"
         refused.append(f"{name}: {reason}")
     raise AssertionError("the split walk serves every stack")
 

@@ -35,7 +35,8 @@ def analog_rays(plan, seed, target, drive):
     sides = tuple(side for side in (0, 1) if plan.slots[side, 1] > 0)
     run = AnalogRun(plan, child_key(seed, BRANCH), sides)
     run.prepare()
-    drive.shoot(run, RAYS)
+    for works in run.rounds(RAYS):
+        drive.do(run, works)
     directions = range(len(plan.theta_deg))
     errors = np.array([assembly.worst_error(plan, run, m, target.of) for m in directions])
     rays = RAYS * np.maximum(errors / target.relative_error, 1.0) ** 2

@@ -2,6 +2,7 @@
 
 from dataclasses import asdict, dataclass
 
+from ...sums import BATCHES, BLOCKS
 from .. import text
 from . import target
 from .losses import NOTEWORTHY_CAP, cap_remedy
@@ -32,6 +33,8 @@ class Forecast:
         Upper estimate of what is held in memory.
     shortage : str or None
         What is missing if that is more than is free here.
+    estimators : list of str
+        Which estimator serves which component, and why.
     memory_to_plot, memory_to_compare : int
         Upper estimates of what the reports on the result take, `compare` with all models.
     probe_rays : int
@@ -50,6 +53,7 @@ class Forecast:
     threads: int
     memory: object
     shortage: str | None
+    estimators: list
     memory_to_plot: int
     memory_to_compare: int
     probe_rays: int
@@ -80,7 +84,18 @@ def file_size(scene):
         orders,
         scene.slice.parametrization,
     )
-    return arrays + len(scene.to_yaml().encode())
+    return arrays + _batches(scene, len(names) - 1) + len(scene.to_yaml().encode())
+
+
+def _batches(scene, sampled):
+    """Bytes of the batches of replicates that estimators other than analog keep, see `goniosim.sums`."""
+    from goniosim.engine.rounds import FEWEST_PATHS
+
+    asked = scene.simulation
+    if asked.estimator == "analog" or (asked.estimator == "auto" and (asked.rays or FEWEST_PATHS) < FEWEST_PATHS):
+        return 0
+    blocks = min(scene.slice.rows, BLOCKS[0]) * min(scene.slice.columns, BLOCKS[1])
+    return 8 * BATCHES * 3 * blocks * len(scene.incident.theta_deg) * sampled * (1 + (asked.orders or 0))
 
 
 def forecasts(scenes):
@@ -94,7 +109,7 @@ def forecasts(scenes):
     -------
     list of Forecast
     """
-    from goniosim.engine import memory_needed, probe, shortage, threads_of
+    from goniosim.engine import estimators_of, memory_needed, probe, shortage, threads_of
     from goniosim.report.memory import memory_to_compare, memory_to_plot
 
     made = []
@@ -115,6 +130,7 @@ def forecasts(scenes):
                 threads=threads_of(scene),
                 memory=memory_needed(scene),
                 shortage=short,
+                estimators=estimators_of(scene),
                 memory_to_plot=memory_to_plot(scene),
                 memory_to_compare=memory_to_compare(scene),
                 probe_rays=measured.rays,
@@ -154,6 +170,7 @@ def cost_text(made):
         (one,) = made
         lines = [
             f"Predicted, from a probe of about {text.duration(PROBE)}",
+            *(f"  estimator   {line}" for line in one.estimators),
             f"  speed       {text.rate(one.rays_per_second)}, {one.events_per_ray:.1f} events per ray",
             f"  time        {_time(one)}",
             f"  file size   at most {text.size(one.n_bytes)}",
@@ -255,6 +272,7 @@ def as_dict(scene, one):
         "memory_bytes": one.memory.peak,
         "memory": asdict(one.memory),
         "memory_shortage": one.shortage,
+        "estimators": one.estimators,
         "report_memory_bytes": {"plot": one.memory_to_plot, "compare": one.memory_to_compare},
         "effects": {effect.name: {"active": effect.active, "why": effect.why} for effect in effects(scene)},
         "absent_interfaces": absent_interfaces(scene),

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...scene import parse_scene
 from .. import text
-from . import audit, cost, losses, target
+from . import accuracy, audit, cost, losses, target
 
 # A smaller share of the energy in uncertain cells is not worth a word.
 NEGLIGIBLE = 1e-3
@@ -33,6 +33,7 @@ def summary(result, path=None):
         audit.direct_lines(result),
         [line for line in [losses.event_cap(result)] if line],
         cost.cost_lines(result),
+        accuracy.accuracy_lines(result),
     ]
     if path is not None:
         blocks.append([f"{path}  ({text.size(os.path.getsize(path))})"])
