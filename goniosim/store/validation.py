@@ -150,7 +150,7 @@ GEOMETRY = (
 RESULT = (
     Rule(
         "incident/rays",
-        "be those in config_yaml, more of other estimators than analog, or fewer if status is partial or a target decides",
+        "be those in config_yaml, fewer if status is partial or a target decides, more only of replicates",
         lambda result, scene: _are_asked_for(result, scene.simulation),
     ),
     Rule(
