@@ -93,7 +93,7 @@ def closed_form_rows(rays, seeds):
     }
     for name, (layers, exact) in stacks.items():
         scene = make_scene(layers, [0, 60, 85], rows=1, columns=1)
-        audits = [simulate(scene, rays=rays, seed=seed).audit.energy for seed in range(seeds)]
+        audits = [simulate(scene, rays=rays, seed=seed, estimator="analog").audit.energy for seed in range(seeds)]
         for m, theta in enumerate((0, 60, 85)):
             for entry, value in exact(math.cos(math.radians(theta))).items():
                 found = np.array([audit[entry][m, 0] for audit in audits])
@@ -165,7 +165,9 @@ def energy_rows(rays):
         "slab 0.2 / 0.2": [dielectric(1.5, 0.2), medium(0.2), dielectric(1.0, 0.2)],
     }
     for name, layers in stacks.items():
-        audit = simulate(make_scene(layers, [0, 60, 85], rows=30, columns=60), rays=rays, seed=4).audit
+        audit = simulate(
+            make_scene(layers, [0, 60, 85], rows=30, columns=60), rays=rays, seed=4, estimator="analog"
+        ).audit
         for m, theta in enumerate((0, 60, 85)):
             e = {entry: float(value[m, 0]) for entry, value in audit.energy.items()}
             lost = e["lost_masked_reflection"] + e["lost_masked_transmission"]

@@ -27,8 +27,6 @@ _NUMBER = 8
 _PROGRAM = 300_000_000
 # Of a thread, besides its arrays.
 _THREAD = 1_000_000
-# Of each direction, as many as no limit on time or memory lets through.
-_MANY_RAYS = 10**12
 # Python's objects around a ledger.
 _LEDGER = 200
 # Size of a file, relative to the arrays in it; while it is made, it exists twice.
@@ -117,8 +115,7 @@ def threads_of(scene):
 
 def _needed(plan, simulation, threads):
     choices = choose(plan, simulation.estimator, simulation.rays)
-    # What stops at an accuracy may go on for long: its ledgers are as many as they get.
-    rays = simulation.rays or _MANY_RAYS
+    rays = simulation.most_rays
     analog = any(choice.estimator == ANALOG for choice in choices)
     walked, walked_rays = (plan, rays) if analog else (plan.in_one_cell(), min(rays, AUDIT_RAYS))
     parts = _of_result(plan) | _of_walk(walked, walked_rays, threads) | {"estimators": 0}

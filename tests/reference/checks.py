@@ -40,14 +40,14 @@ def _blocks(cells):
     return cells.reshape(rows // 10, 10, columns // 30, 30).sum(axis=(1, 3))
 
 
-def plastic_cells(thetas, parametrization, rays, seed):
+def plastic_cells(thetas, parametrization, rays, seed, estimator="analog"):
     """Chi-squares of an absorbing smooth coat over a Lambertian base."""
     scene = make_scene([dielectric(1.5), medium(0.2), lambert(0.5)], thetas, parametrization)
-    energies = simulate(scene, rays=rays, seed=seed, estimator="analog").components["reflection/internal"].energy
+    energies = simulate(scene, rays=rays, seed=seed, estimator=estimator).components["reflection/internal"].energy
     return _chi_squares(energies, lambda power: plastic_density(1.5, 0.5, 0.2, power), thetas, parametrization, rays)
 
 
-def conductor_cells(alpha, thetas, parametrization, rays, seed):
+def conductor_cells(alpha, thetas, parametrization, rays, seed, estimator="analog"):
     """Chi-squares of a bare rough conductor, sampled.
 
     The engine integrates the direct reflection of the top interface. Below an
@@ -56,16 +56,16 @@ def conductor_cells(alpha, thetas, parametrization, rays, seed):
     """
     layers = [dielectric(1.0), conductor(1.45, 1.0, alpha)]
     scene = make_scene(layers, thetas, parametrization)
-    energies = simulate(scene, rays=rays, seed=seed, estimator="analog").components["reflection/internal"].energy
+    energies = simulate(scene, rays=rays, seed=seed, estimator=estimator).components["reflection/internal"].energy
     return _chi_squares(
         energies, lambda power: reflection_density(alpha, 1.45 + 1.0j, power), thetas, parametrization, rays
     )
 
 
-def transmission_cells(alpha, eta, thetas, rays, seed):
+def transmission_cells(alpha, eta, thetas, rays, seed, estimator="analog"):
     """Chi-squares of the light refracted by one rough interface."""
     scene = make_scene([dielectric(eta, alpha)], thetas)
-    energies = simulate(scene, rays=rays, seed=seed, estimator="analog").components["transmission"].energy
+    energies = simulate(scene, rays=rays, seed=seed, estimator=estimator).components["transmission"].energy
     return _chi_squares(energies, lambda power: transmission_density(alpha, eta, power), thetas, "classic", rays)
 
 

@@ -54,7 +54,7 @@ def test_audit(number):
     layers, theta = random_stack(number)
     scene = make_scene(layers, theta, rows=6, columns=6)
     rays, few = 500_000, 50_000
-    result = simulate(scene, rays=rays, seed=number)
+    result = simulate(scene, rays=rays, seed=number, estimator="analog")
     audit = result.audit
     assert np.abs(audit.residual).max() < 1e-12
     slow = trace(stack_from_scene(scene), theta, few, number, 6, 6)
@@ -79,7 +79,7 @@ def test_integrated_direct_reflection_equals_the_sampled_one(alpha):
     thetas = [0, 15, 30, 45, 60, 75, 85]
     rays = 4_000_000
     for top in (dielectric(1.5, alpha), conductor([1.45, 0.3, 2.0], [1.0, 3.0, 0.0], alpha)):
-        audit = simulate(make_scene([top], thetas, rows=30, columns=60), rays=rays, seed=5).audit
+        audit = simulate(make_scene([top], thetas, rows=30, columns=60), rays=rays, seed=5, estimator="analog").audit
         sampled = audit.energy["reflected_direct"]
         # A path deposits at most 1, so that its second moment is at most its mean.
         error = np.sqrt(sampled * (1.0 - sampled) / rays) + 1e-9

@@ -70,7 +70,9 @@ def _check(layers, side, parametrization, theta, least):
     scene = make_scene(layers, theta, parametrization)
     made = Operator(make_plan(scene), (side,))
     made.prepare()
-    pool = [simulate(scene, rays=RAYS, seed=seed).components[COMPONENT[side]] for seed in range(RUNS)]
+    pool = [
+        simulate(scene, rays=RAYS, seed=seed, estimator="analog").components[COMPONENT[side]] for seed in range(RUNS)
+    ]
     slices = energies(made, 4096, 32, seed=7)
     assert np.isfinite(slices).all()
     assert slices.mean(axis=0).min() > -1e-7 * slices.mean(axis=0).sum(axis=(-2, -1)).max()

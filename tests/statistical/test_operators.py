@@ -43,7 +43,7 @@ def test_agrees_with_the_analog_engine(case):
     """Three channels of blocks: none beyond 5 sigma, and the totals within 4; false-alarm rate 2e-4 a case."""
     scene, made = operator_of(case)
     assert made.variant.leaves == case.split()[0] if "between" not in case else made.variant.interface == 2
-    component = simulate(scene, rays=400_000, seed=3).components[COMPONENT[CASES[case][1]]]
+    component = simulate(scene, rays=400_000, seed=3, estimator="analog").components[COMPONENT[CASES[case][1]]]
     z, totals = deviations(made, [component], energies(made, 1024, 32, seed=1), 400_000)
     assert z.size > 15
     assert np.abs(z).max() < 5.0
@@ -57,7 +57,7 @@ def test_orders_add_up_and_agree():
     parts = energies(made, 1024, 32, seed=2)
     assert parts.shape[1] == 3
     assert parts.sum(axis=1) == pytest.approx(energies(whole, 1024, 32, seed=2)[:, 0], rel=1e-9, abs=1e-14)
-    component = simulate(scene, rays=400_000, seed=4).components["transmission"]
+    component = simulate(scene, rays=400_000, seed=4, estimator="analog").components["transmission"]
     for slot, order in enumerate(component.orders.values()):
         z, totals = deviations(made, [order], parts[:, slot : slot + 1], 400_000)
         assert np.abs(z).max() < 5.0 and np.abs(totals).max() < 4.0
@@ -139,6 +139,6 @@ def test_lambertian_base_under_a_wide_top():
     scene = make_scene([dielectric(1.5, 0.3), lambert(0.6)], 70.0, rows=9, columns=36)
     made = Operator(make_plan(scene), (UP,), FINE)
     made.prepare()
-    component = simulate(scene, rays=400_000, seed=5).components["reflection/internal"]
+    component = simulate(scene, rays=400_000, seed=5, estimator="analog").components["reflection/internal"]
     _, totals = deviations(made, [component], energies(made, 1024, 32, seed=3), 400_000)
     assert np.abs(totals).max() < 4.5

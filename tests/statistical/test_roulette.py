@@ -25,7 +25,7 @@ DARK = {
 
 def many(layers, component, theta=30.0, rows=3, columns=4):
     scene = make_scene(layers, theta, rows=rows, columns=columns)
-    found = [simulate(scene, rays=RAYS, seed=seed) for seed in range(1, SEEDS + 1)]
+    found = [simulate(scene, rays=RAYS, seed=seed, estimator="analog") for seed in range(1, SEEDS + 1)]
     parts = [result.components[component] for result in found]
     energy, stderr = (np.array([getattr(part, name)[0, 0] for part in parts]) for name in ("energy", "stderr"))
     return energy, stderr, np.array([result.audit.energy["lost_roulette"][0, 0] for result in found])

@@ -18,7 +18,19 @@ ROOT = Path(goniosim.__file__).resolve().parent.parent
 MODULES = {"goniosim": ROOT / "goniosim", "goniosim_cli": ROOT / "cli"}
 
 # The ground, which every room may use; `_jit` brings numba along and is for rooms with compiled code.
-GROUND = {"albedo", "cores", "effective", "errors", "free_memory", "parts", "provenance", "result", "sums", "writing"}
+GROUND = {
+    "accuracy",
+    "albedo",
+    "cores",
+    "effective",
+    "errors",
+    "free_memory",
+    "parts",
+    "provenance",
+    "result",
+    "sums",
+    "writing",
+}
 COMPILED = {"_jit"}
 
 # For each room, the rooms that it may import besides itself and the ground. A new room is a new line.
