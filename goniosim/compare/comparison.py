@@ -120,8 +120,8 @@ def compare(
     >>> comparison
     <Comparison with 1 material: RMSE [sr^-1/2] over all directions, mean over the channels
       coated, reflection/internal
-        ww09       0.0954 ± 0.0013
-        bati19_ww  0.0446 ± 0.0016>
+        ww09       0.09536 ± 0.00080
+        bati19_ww  0.0446 ± 0.0012>
     >>> [row["model"] for row in comparison.rows(theta_deg=60)]
     ['ww09', 'bati19_ww']
     """

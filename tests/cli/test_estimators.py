@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-import goniosim
+from goniosim import open_result
 
 LAYERS = {
     "metal": "{type: conductor, eta: 1.45, kappa: [1.0, 0.01, 0.01], alpha: 0.2}",
@@ -85,7 +85,7 @@ def test_a_target_is_reached_by_what_is_enough_for_it(folder, goniosim, scene, o
     code, out, err = goniosim("simulate", path, "--target", "5%", "--of", of, "-o", "a.h5")
     assert code == 0, err
     assert f"target: 5 % of {of}: reached" in out
-    result = goniosim_open("a.h5")
+    result = open_result("a.h5")
     assert result.target_reached is True and result.status == "complete"
 
 
@@ -95,10 +95,6 @@ def test_a_target_beyond_the_limits_is_9(folder, goniosim, scene):
         "simulate", path, "--estimator", "analog", "--target", "0.01%", "--max-rays", "2e5", "-o", "a.h5"
     )
     assert code == 9 and "was not reached" in err and "not reached" in out
-    result = goniosim_open("a.h5")
+    result = open_result("a.h5")
     assert result.target_reached is False and (result.rays <= 200_000).all()
     assert result.cost.rays.shape[0] == 2
-
-
-def goniosim_open(path):
-    return goniosim.open_result(path)
