@@ -53,9 +53,9 @@ accuracy: $(STAMP)
 
 # Files that hold these rays or more are left alone; with more RAYS all are simulated anew. For fewer, remove the folder.
 paper: $(STAMP)
-	$(BIN)/goniosim simulate configs/paper/plastics.yaml --estimator analog --rays $(RAYS) -o $(PAPER)
-	$(BIN)/goniosim simulate configs/paper/metals.yaml --estimator analog --rays $(RAYS) -o $(PAPER)
-	$(BIN)/goniosim simulate configs/paper/slabs.yaml --estimator analog --rays $(RAYS) -o $(PAPER)
+	$(BIN)/goniosim simulate configs/paper/plastics.yaml --rays $(RAYS) -o $(PAPER) --estimator analog
+	$(BIN)/goniosim simulate configs/paper/metals.yaml --rays $(RAYS) -o $(PAPER) --estimator analog
+	$(BIN)/goniosim simulate configs/paper/slabs.yaml --rays $(RAYS) -o $(PAPER) --estimator analog
 	$(MAKE) paper-report
 
 # What is derived from the results: a make of its own, which sees the files that are there by now.

@@ -10,6 +10,10 @@ from goniosim.report.cost.price_list import price_list as measure
 from goniosim.report.drawing.files import is_figure
 from small import SCENE
 
+# A base that is connected to all cells makes replicates in no time.
+PLASTIC = SCENE.replace(
+    "{type: conductor, eta: 1.45, kappa: [1.0, 0.01, 0.01], alpha: 0.2}", "{type: lambert, rho: [0.1, 0.6, 0.2]}"
+)
 QUICK = ("--max-time", "0.1s", "--threads", 1)
 
 
@@ -18,7 +22,7 @@ def made(tmp_path_factory):
     """One price list, told and drawn, and the same once more as JSON."""
     folder = tmp_path_factory.mktemp("cost")
     scene = folder / "scene.yaml"
-    scene.write_text(SCENE)
+    scene.write_text(PLASTIC)
     known = []
 
     def once(*arguments):
@@ -109,6 +113,7 @@ def test_what_is_no_time_is_refused(folder, goniosim, written):
 
 
 def test_without_memory_for_more_cells_or_directions_the_rest_is_told(folder, goniosim, monkeypatch):
+    (folder / "scene.yaml").write_text(PLASTIC)
     monkeypatch.setattr("goniosim.report.cost.price_list.shortage", lambda scene: "too little")
     code, out, _ = goniosim("cost", "scene.yaml", *QUICK, "--json")
     assert code == 0
