@@ -73,7 +73,8 @@ def test_json_has_the_agreed_shape(made):
         for price in prices:
             assert price.keys() == {"error", "seconds", "cpu_seconds", "measured", "uncertainty"}
             assert price["seconds"] > 0.0 and price["cpu_seconds"] > 0.0 and price["uncertainty"] > 0.0
-        assert prices[-1]["cpu_seconds"] > prices[0]["cpu_seconds"]
+        # The first replicates may be better than any price asks for.
+        assert prices[-1]["cpu_seconds"] >= prices[0]["cpu_seconds"]
     assert data["limits"].keys() == {"subcells", "cells", "directions"}
     assert [entry["n"] for entry in data["limits"]["subcells"]["models"]["ww09"]] == [1, 3, 5, 9, 15]
     assert [entry["directions"] for entry in data["limits"]["directions"]["reflection/internal"]] == [7, 15, 30]
