@@ -83,10 +83,15 @@ def test_what_does_not_go_together(goniosim, folder, command, line, code, said):
     assert not (folder / "small.h5").exists()
 
 
+def lines_of(err):
+    """What was said, but for the word on kernels that a first run has."""
+    return [line for line in err.splitlines() if "preparing the kernels" not in line]
+
+
 def test_a_target_that_is_missed_is_9_and_the_result_is_kept(goniosim, folder, aimed):
     aimed["missed"].add("small")
     code, out, err = call(goniosim, f"--target {TIMES}")
-    assert (code, err.splitlines()) == (9, [MISSED])
+    assert (code, lines_of(err)) == (9, [MISSED])
     assert "target: 1 % of slice, at most 10 min: not reached" in out
     result = open_result(folder / "small.h5")
     assert (result.status, result.target_reached) == ("complete", False)
@@ -162,7 +167,7 @@ def test_in_a_study_all_files_are_written_before_a_miss_counts(goniosim, folder,
     aimed["missed"] |= {"coat-0.1", "coat-0.3"}
     code, out, err = call(goniosim, f"--target {TIMES} -o out", "study.yaml")
     assert code == 9 and out.count("complete") == 3
-    assert [line.split(": ")[1] for line in err.splitlines()] == ["out/coat-0.1.h5", "out/coat-0.3.h5"]
+    assert [line.split(": ")[1] for line in lines_of(err)] == ["out/coat-0.1.h5", "out/coat-0.3.h5"]
     assert len(list((folder / "out").glob("*.h5"))) == 3
     code, _, err = call(goniosim, f"--target {TIMES} -o out", "study.yaml")
     assert (code, len(aimed["asked"])) == (9, 3)
