@@ -11,6 +11,9 @@ from .unit import child_key
 
 # Child of the seed 0, for numbers that no replicate uses.
 BRANCH = 4
+# The largest size that is tried, as doublings of the smallest; seconds that a path takes at the least.
+DOUBLINGS = 4
+FASTEST = 1e-9
 
 
 def replicated_seconds(plan, choice, rays, threads):
@@ -46,10 +49,15 @@ def replicated_seconds(plan, choice, rays, threads):
         events = workspace.run(middle, size, keys, out, threading.Event())
         return time.perf_counter() - start, events
 
-    (small, _), (large, events) = run(SMALLEST), run(2 * SMALLEST)
-    slope = max(large - small, 0.0) / SMALLEST
+    small = min(run(SMALLEST)[0] for _ in range(2))
+    for size in (SMALLEST << doublings for doublings in range(1, DOUBLINGS + 1)):
+        large, events = run(size)
+        # What a path adds must stand out of what a replicate costs in any case.
+        if large > 2.0 * small:
+            break
+    slope = max((large - small) / (size - SMALLEST), FASTEST)
     fixed = max(small - slope * SMALLEST, 0.0)
     chunks = -(-REPLICATES // estimator.chunk)
     found = sizes(rays)
     seconds = chunks * sum(fixed + slope * size for size in found) * len(plan.theta_deg)
-    return shared + seconds / threads, events / (2.0 * SMALLEST * len(keys))
+    return shared + seconds / threads, events / float(size * len(keys))
