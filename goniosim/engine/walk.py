@@ -70,7 +70,7 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
     channels = ledger.shape[1]
     stop_at = state[EVENTS] + budget
     while state[EVENTS] < stop_at:
-        q = _fullest(filled)
+        q = fullest(filled)
         key = derive_key(part_key, state[STAGES])
         state[STAGES] += 1
         if filled[q] < batch_size and state[LEFT] > 0:
@@ -137,7 +137,8 @@ def walk(stack, scales, light, part_key, budget, space, ledger, cells):
 
 
 @stage
-def _fullest(filled):
+def fullest(filled):
+    """Number of the queue that holds most."""
     best = 0
     for q in range(1, filled.shape[0]):
         if filled[q] > filled[best]:

@@ -7,16 +7,6 @@ from ..layout import WEIGHT, X, Y, Z
 
 
 @stage
-def fullest(filled):
-    """Number of the queue that holds most."""
-    best = 0
-    for q in range(1, filled.shape[0]):
-        if filled[q] > filled[best]:
-            best = q
-    return best
-
-
-@stage
 def launch(batch, n, light, channels, number):
     """A batch of new paths, the first of which has the given number."""
     for field in range(batch.shape[0]):

@@ -5,7 +5,7 @@ from ...optics.random import derive_key, uniform
 from ..layout import DOWN, UP, WEIGHT, X, Z
 from ..stages import LAMBERT, ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC
 from ..stages.travel import absorb, roulette
-from ..walk import ABOVE, BELOW, MAX_ROUNDS
+from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
 from .base import meet_base
 from .deposit import leave
 from .dielectric import go_through, meet_dielectric, turn_back
@@ -39,7 +39,7 @@ from .layout import (
     TURN,
 )
 from .numbers import facet_numbers, hashed_points, lattice_points
-from .queues import close_up, fullest, launch, pop, push
+from .queues import close_up, launch, pop, push
 
 # Children of the stage's key: 0 and 1 are the points, 2 azimuths, 3 the roulette.
 _COIN_KEY = 4
