@@ -11,6 +11,7 @@ from ..provenance import provenance
 from ..result import Result
 from ..scene import CHANNELS, effects, with_arguments
 from . import assembly, estimate
+from .blas import one_thread
 from .direct import direct_reflection
 from .drive import Drive
 from .memory import require_memory, threads_of
@@ -52,7 +53,9 @@ def simulate(scene, *, progress=None, stop=None, **given):
     scene = with_arguments(scene, given)
     require_memory(scene)
     try:
-        return _simulate(scene, make_plan(scene), granted_threads(threads_of(scene)), progress, stop)
+        # Not around single products: the library's own threads spin for a while after each.
+        with one_thread():
+            return _simulate(scene, make_plan(scene), granted_threads(threads_of(scene)), progress, stop)
     except MemoryError as error:
         raise ResourceError(
             "memory ran out: another process took it, or a limit is lower than it looks; "

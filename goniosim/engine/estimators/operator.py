@@ -8,7 +8,6 @@ import numpy as np
 
 from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals, waiting_rays
-from ..operators.blas import one_thread
 from ..operators.choice import IN, choose, inner_index
 from ..operators.gather import POINTS, TAILS, gather
 
@@ -56,8 +55,7 @@ class Operator:
 
     def prepare(self):
         """Tabulate the interface, for all incident directions."""
-        with one_thread():
-            self.application.prepare()
+        self.application.prepare()
 
     @property
     def memory(self):
@@ -141,8 +139,7 @@ class Workspace:
                 return None
             events += EVENT * found
             self._take(r, arrivals, size)
-        with one_thread():
-            values = operator.application.apply(self.space)
+        values = operator.application.apply(self.space)
         events += operator.application.multiplications // MULTIPLICATIONS
         for r, key in enumerate(keys):
             if stop is not None and stop.is_set():
