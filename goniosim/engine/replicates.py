@@ -10,6 +10,7 @@ import numpy as np
 from ..sums import block_sums
 from .mending import mended
 from .rounds import FEWEST_REPLICATES, REPLICATES
+from .welford import FoldedBlocks, Welford
 
 
 class Replicates:
@@ -37,6 +38,7 @@ class Replicates:
     def __init__(self, views, shape, columns, mends):
         self._views = views
         self._columns = columns
+        self._blocks_of = FoldedBlocks(shape[1], columns, shape[2])
         self._mends = mends
         slices, sums = (len(views), *shape), (len(views), shape[0])
         self._cells, self._totals, self._batches = _Sum(slices), _Sum(sums), 0.0
@@ -73,8 +75,12 @@ class Replicates:
         # After a stop, replicates count only as far as none is missing before them.
         if number != self._round.count or size != self._size:
             return
-        views = np.stack([slots[view].sum(axis=0) for view in self._views])
-        blocks = block_sums(unfold(views, self._columns))
+        views = (
+            slots
+            if len(slots) == len(self._views) == 1
+            else np.stack([slots[view].sum(axis=0) for view in self._views])
+        )
+        blocks = self._blocks_of(views)
         self._round.add(views)
         self._round_totals.add(blocks.sum(axis=(2, 3)))
         self._round_blocks.append(blocks)
@@ -119,29 +125,6 @@ def _as_many(found):
     """As many values as replicates of a whole round, with the same mean; those of an interrupted one come in again."""
     again = found[np.arange(REPLICATES) % len(found)]
     return again + (found.mean(axis=0) - again.mean(axis=0))
-
-
-class Welford:
-    """Mean and squared deviations of arrays, one by one."""
-
-    def __init__(self):
-        self.count = 0
-        self.mean = None
-        self._squares = None
-
-    def add(self, values):
-        """Take in an array."""
-        self.count += 1
-        if self.mean is None:
-            self.mean, self._squares = values.copy(), np.zeros_like(values)
-            return
-        step = values - self.mean
-        self.mean += step / self.count
-        self._squares += step * (values - self.mean)
-
-    def variance_of_mean(self):
-        """Squared standard error of the mean."""
-        return self._squares / (self.count * (self.count - 1.0))
 
 
 class _Sum:

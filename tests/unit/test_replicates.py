@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from goniosim.engine.replicates import Replicates, Welford, unfold
+from goniosim.engine.replicates import Replicates, unfold
 from goniosim.engine.rounds import FEWEST_PATHS, REPLICATES, SMALLEST, chunks, sizes
+from goniosim.engine.welford import FoldedBlocks, Welford
+from goniosim.sums import block_sums
 
 SHAPE = (2, 7, 5)
 VIEWS = [slice(0, 3), slice(0, 1), slice(1, 2), slice(2, 3)]
@@ -99,3 +101,11 @@ def test_nothing_scatters_where_nothing_is():
     for _ in range(4):
         sums.add(np.array([0.0, 2.0]))
     assert sums.mean.tolist() == [0.0, 2.0] and sums.variance_of_mean().tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(90, 360), (17, 38), (3, 4), (7, 5), (16, 37)])
+def test_blocks_of_folded_slices(rows, columns):
+    width = columns // 2 if columns % 2 == 0 else columns
+    half = np.random.default_rng(1).gamma(0.5, size=(2, 3, rows, width))
+    found = FoldedBlocks(rows, columns, width)(half)
+    np.testing.assert_allclose(found, block_sums(unfold(half, columns)), rtol=1e-13)

@@ -26,8 +26,8 @@ from .base_draws import BLOCK, N_SCRATCH, come_back, enter, look, uniforms
 
 # Children of a replicate's key: the light paths, of which each visit to the base has its own, and the cells.
 LIGHT, CELLS = 0, 1
-# Light paths for each draw of a ring, and of a single cell where rows are no rings.
-RING_PATHS, CELL_PATHS = 8, 64
+# Light paths for each draw of a ring or cell, and draws of all of them for each light path, at the most.
+PATHS, DRAWS = 8, 64
 # Visits to the base whose energy is below this share of one path's are left to chance.
 FAINT = 0.125
 # Draws per call of a kernel, which cannot be interrupted: some tens of milliseconds.
@@ -103,7 +103,7 @@ class Workspace:
         direction : int
         size : int
             Light paths that start; as many leave the base for every further visit, until too little is left. Every
-            eighth comes with a draw in each ring, or every 64th with one in each cell.
+            eighth comes with a draw in each ring or cell; fewer do where these are many.
         keys : ndarray of uint64
         out : ndarray, shape (len(keys), slots, distinct channels, rows, width)
             Overwritten: the energy in every cell, as a fraction of the incident flux.
@@ -115,7 +115,7 @@ class Workspace:
             Draws of facets, each as good as an event; None if it was stopped.
         """
         cells = self._cells(direction)
-        draws = max(1, size // (RING_PATHS if self.per_row == 1 else CELL_PATHS))
+        draws = max(1, min(size // PATHS, DRAWS * size // len(cells)))
         events = 0
         for replicate, key in zip(out, keys, strict=True):
             arriving = self._arriving(direction, size, child_key(key, LIGHT), len(replicate), stop)
