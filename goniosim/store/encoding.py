@@ -6,7 +6,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from goniosim.store import manifest, seal
+from goniosim.store import chunks, manifest, seal
 from goniosim.store.access import chunk_shape
 from goniosim.store.layout import CHECKSUMS, SCALES, Dataset, angles_of
 
@@ -35,12 +35,10 @@ def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> N
     """
     values = stored(path, values, entry.dtype)
     # HDF5 cannot chunk an empty dataset, and there is nothing in it to protect.
-    filters = {}
+    filters = {"chunks": chunk_shape(values.shape), **chunks.FILTERS} if values.size else {}
+    dataset = root.create_dataset(path, values.shape, values.dtype, track_times=False, **filters)
     if values.size:
-        # Level 1: level 4 saves 1 % of Monte Carlo noise, shuffling 10 %.
-        filters = {"chunks": chunk_shape(values.shape), "fletcher32": True, "shuffle": True, "compression": 1}
-    dataset = root.create_dataset(path, data=values, track_times=False, **filters)
-
+        chunks.write(dataset, values)
     _write_meaning(dataset, entry)
     write_text(dataset, manifest.VALUES, manifest.digest_of_values(values))
     if entry.dtype == "bool":

@@ -1,6 +1,7 @@
 """What is written is what is read."""
 
 import dataclasses
+import threading
 import time
 
 import h5py
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 
 from goniosim.result import AUDIT_ENTRIES
-from goniosim.store import open_result, predicted_size, read_header, write_result
+from goniosim.store import chunks, open_result, predicted_size, read_header, write_result
 from goniosim.store.writer import encode
 from synthetic import make_result
 
@@ -209,6 +210,37 @@ def test_every_dataset_is_protected(tmp_path):
         file.visititems(look)
         assert file["reflection/internal/energy"].chunks == (1, 1, 6, 8)
     assert unprotected == []
+
+
+@pytest.mark.parametrize("words", [[0xFFFF, 0, 0, 0], [0, 0, 0, 0xFFFF], [0xFFFE, 0, 0, 1], [1, 2, 3, 4]])
+def test_hdf5_accepts_checksums_that_came_round(words):
+    """Of sums that are a multiple of 65535, which ones' complement calls by two names."""
+    raw = np.array(words, ">u2").tobytes()
+    with h5py.File("memory", "w", driver="core", backing_store=False) as file:
+        dataset = file.create_dataset("values", len(raw), np.uint8, chunks=(len(raw),), fletcher32=True)
+        dataset.id.write_direct_chunk((0,), raw + chunks.checksum(raw))
+        assert dataset[()].tobytes() == raw
+
+
+def test_bytes_do_not_depend_on_threads(monkeypatch):
+    """Slices that are worth threads, and where the system starts none."""
+    values = np.random.default_rng(1).gamma(1.0, size=(2, 3, 90, 360))
+
+    def written():
+        with h5py.File("memory", "w", driver="core", backing_store=False) as file:
+            dataset = file.create_dataset(
+                "values", values.shape, values.dtype, chunks=(1, 1, 90, 360), **chunks.FILTERS
+            )
+            chunks.write(dataset, values)
+            np.testing.assert_array_equal(dataset[()], values)
+            return file.id.get_file_image()
+
+    def refuse(*_):
+        raise RuntimeError("can't start new thread")
+
+    with_threads = written()
+    monkeypatch.setattr(threading.Thread, "start", refuse)
+    assert written() == with_threads
 
 
 def test_other_programs_notice_damage_too(tmp_path):
