@@ -12,7 +12,8 @@ INTRODUCTION = """\
 
 The paper ("Numerical Analysis of Layered Material Models", HAL 02157966) compares published models of layered materials
 with simulations of 60 materials, at {theirs} rays per direction. This page takes its written findings one by one. The
-60 materials are those of [configs/paper](../configs/paper), simulated with {rays} rays per direction. The errors are
+60 materials are those of [configs/paper](../configs/paper), simulated with {rays} light paths per direction of what
+`auto` chooses: their noise is that of {theirs} independent paths or less (`make headline` measures it). The errors are
 those of [compare.md](compare.md): RMSE of Eq. 4 for internal paths (plastics, metals) or transmission (slabs), over all
 seven directions, mean over the channels, in sr^-1/2, the noise of the simulation taken out, the models integrated to
 convergence. The 5 × 5 sub-cells of the paper change {coarse} of these {rows} errors by more than 2 %, up to a factor of

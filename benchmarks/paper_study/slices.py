@@ -7,6 +7,7 @@ import numpy as np
 
 import goniosim
 from goniosim.slices import PARAMETRIZATIONS
+from goniosim.sums import noise_of
 
 from .errors import StudyError
 from .verdicts import Value
@@ -14,10 +15,18 @@ from .verdicts import Value
 
 @dataclass(frozen=True)
 class Slice:
-    """One component in all directions: energy and its standard error, shape (M, C, R, K)."""
+    """One component in all directions.
+
+    Attributes
+    ----------
+    energy, stderr : ndarray, shape (M, C, R, K)
+    noise : list
+        How the noise of the cells hangs together in each direction (`goniosim.sums`); None where there is none.
+    """
 
     energy: np.ndarray
     stderr: np.ndarray
+    noise: list
 
 
 class Slices:
@@ -37,13 +46,12 @@ class Slices:
 
     def reference(self, component):
         """The simulated `Slice` of a component."""
-        found = self.result.components[component]
-        return Slice(found.energy, found.stderr)
+        return slice_of(self.result, self.result.components[component])
 
     def model(self, label, component):
         """The `Slice` of a model, integrated with 5 x 5 sub-cells."""
         energy = model_energy(self._results, self.material.name, label, component)
-        return Slice(energy, np.zeros_like(energy))
+        return Slice(energy, np.zeros_like(energy), [None] * len(energy))
 
     def direction(self, theta_deg):
         """Number of an incident direction."""
@@ -78,10 +86,30 @@ class Slices:
         -------
         list of Value
         """
-        where = chosen & self.result.cells.valid[direction]
-        energy = found.energy[direction][:, where].sum(axis=1)
-        stderr = np.sqrt((found.stderr[direction][:, where] ** 2).sum(axis=1))
-        return [Value(float(e), float(s)) for e, s in zip(energy, stderr, strict=True)]
+        return energy_in(found, direction, chosen & self.result.cells.valid[direction])
+
+
+def slice_of(result, component):
+    """The `Slice` of a component of a result, or of one of its orders."""
+    noise = [noise_of(component, m, rays) for m, rays in enumerate(result.rays)]
+    return Slice(component.energy, component.stderr, noise)
+
+
+def energy_in(found, direction, where):
+    """Energy of each channel in some cells, a list of `Value`.
+
+    Parameters
+    ----------
+    found : Slice
+    direction : int
+    where : ndarray of bool, shape (R, K)
+    """
+    weights = where.astype(float)
+    variance = (found.stderr[direction] ** 2 * weights).sum(axis=(1, 2))
+    if found.noise[direction] is not None:
+        variance = variance + found.noise[direction].of_sum(weights)
+    energy, stderr = (found.energy[direction] * weights).sum(axis=(1, 2)), np.sqrt(np.maximum(variance, 0.0))
+    return [Value(float(e), float(s)) for e, s in zip(energy, stderr, strict=True)]
 
 
 def ratio(a, b):

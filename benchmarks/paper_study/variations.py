@@ -1,6 +1,9 @@
 """The tables of the experiments: how the claims fare when a choice is made otherwise."""
 
+from goniosim.report.text import count
+
 from .experiments import conventions, metal_options, metal_tau, plastic_tau, slab_options
+from .experiments.scenes import RAYS
 from .experiments.table import settings_of, value_of
 from .findings import eq5, plastics_ranking, rho_and_tau, rough_base, slabs, smooth_base
 from .markdown import number, table
@@ -28,7 +31,7 @@ def text(study):
         [
             "# What was varied",
             "Each cell: the verdict on the claims of that finding, and for each claim how many comparisons are *yes*. "
-            "Stacks other than the 60 are simulated with 1e6 rays per direction (4e6 for the colours).",
+            f"Stacks other than the 60 are simulated with {count(RAYS)} rays per direction.",
             "### Plastics: other τ and ρ",
             "Declared: τ C = (0.05, 0.1, 0.8), τ A = 0.2, ρ C = (0.1, 0.6, 0.1), ρ A = 0.5. Each row changes one of "
             "them (α₀ = 0.05).",

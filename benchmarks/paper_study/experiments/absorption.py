@@ -7,7 +7,7 @@ from .scenes import simulate
 from .table import cell
 
 NAME = "absorption"
-ALPHA0, RAYS = 0.05, 1e6
+ALPHA0 = 0.05
 TAUS = (0.0, 0.1, 0.2, 0.4, 0.8)
 # The channels of one simulation.
 RHOS = {"R": 0.1, "G": 0.5, "B": 0.9}
@@ -18,7 +18,7 @@ def run(results):
     """Yield rows; the material of a row is its rho."""
     for tau in TAUS:
         base = {"type": "lambert", "rho": list(RHOS.values())}
-        comparison = goniosim.compare(simulate("plastic", ALPHA0, tau, base, RAYS), MODELS)
+        comparison = goniosim.compare(simulate("plastic", ALPHA0, tau, base), MODELS)
         for channel, rho in RHOS.items():
             for row in comparison.rows(channel=channel):
                 norm = row["reference_norm"]

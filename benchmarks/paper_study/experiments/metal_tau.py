@@ -6,7 +6,7 @@ from .scenes import conductor, simulate, tau_text
 from .table import rmse_rows
 
 NAME = "metal_tau"
-RAYS, ETA1 = 1e6, 1.45
+ETA1 = 1.45
 TAUS = {"τ = 0": 0.0, "τ = 0.5": 0.5, "τ = 1.5": 1.5, "τ = (0, 0, 2)": [0.0, 0.0, 2.0]}
 MODELS = ["ww09", "elek10", "bati19_ww", "belcour18_forward", "belcour18_symmetric"]
 # Given, so that no second reading is compared beside it.
@@ -20,5 +20,5 @@ def run(results):
         for alpha0 in (0.001, 0.05, 0.2):
             for alpha1 in (0.001, 0.2):
                 name = f"{label}-alpha0_{alpha0:g}-alpha1_{alpha1:g}-tau_{tau_text(tau)}-eta1_{ETA1}"
-                result = simulate(name, alpha0, tau, conductor(ETA1, alpha1), RAYS)
+                result = simulate(name, alpha0, tau, conductor(ETA1, alpha1))
                 yield from rmse_rows(goniosim.compare(result, MODELS, ONLY), setting)

@@ -6,7 +6,6 @@ from .scenes import simulate, tau_text
 from .table import rmse_rows
 
 NAME = "plastic_tau"
-RAYS = 1e6
 MODELS = ["ww09", "elek10", "bati19_ww"]
 # The coat hardly matters for the errors of plastics.
 ALPHA0 = 0.05
@@ -28,5 +27,5 @@ def run(results):
         bodies = {"P1": (tau_c, rho_c), "P2": (tau_c, rho_a), "P3": (tau_a, rho_c), "P4": (tau_a, rho_a)}
         for label, (tau, rho) in bodies.items():
             name = f"{label}-alpha0_{ALPHA0:g}-tau_{tau_text(tau)}-rho_{tau_text(rho)}"
-            result = simulate(name, ALPHA0, tau, {"type": "lambert", "rho": rho}, RAYS)
+            result = simulate(name, ALPHA0, tau, {"type": "lambert", "rho": rho})
             yield from rmse_rows(goniosim.compare(result, MODELS), setting)

@@ -6,9 +6,11 @@ from goniosim.scene import parse_scene
 THETAS = [0, 15, 30, 45, 60, 75, 85]
 COAT = {"type": "dielectric", "eta": 1.5}
 KAPPA = [1.0, 0.01, 0.01]
+# Light paths per incident direction.
+RAYS = 2e5
 
 
-def simulate(name, alpha0, tau, base, rays, orders=None):
+def simulate(name, alpha0, tau, base, orders=None):
     """Simulate a coat over a base as the configurations of the paper do.
 
     Parameters
@@ -18,8 +20,6 @@ def simulate(name, alpha0, tau, base, rays, orders=None):
     tau : float or list of float
     base : dict
         The last interface.
-    rays : float
-        Per incident direction.
     orders : int, optional
         Orders to tell apart.
 
@@ -27,7 +27,7 @@ def simulate(name, alpha0, tau, base, rays, orders=None):
     -------
     goniosim.result.Result
     """
-    simulation = {"rays": int(rays), "seed": 2}
+    simulation = {"rays": int(RAYS), "seed": 2}
     if orders is not None:
         simulation["orders"] = orders
     content = {
