@@ -76,7 +76,11 @@ directions spread evenly over the range of angles:
 
 {directions}
 
-No number of rays mends these three. A noise far below the largest of them is worth its time only if you ask for just
+**Nodes.** An operator bins light at nodes half a degree apart. What that may put a slice off by, as the run measured:
+
+{nodes}
+
+No number of rays mends these four. A noise far below the largest of them is worth its time only if you ask for just
 these cells and just these directions.
 """
 
@@ -112,7 +116,7 @@ def write(lists, seconds, path):
         parts.append(PRICES.format(**facts, component=component, prices=tables.prices(made)))
     parts.append(LAWS.format(laws=tables.laws(lists)))
     parts.append(EFFECTS.format(effects=tables.effects(lists)))
-    limits = {limit: getattr(tables, limit)(lists) for limit in ("subcells", "cells", "directions")}
+    limits = {limit: getattr(tables, limit)(lists) for limit in ("subcells", "cells", "directions", "nodes")}
     parts.append(LIMITS.format(**limits))
     first = next(iter(lists))
     parts.append(MODELS.format(name=first, models=tables.models(lists[first])))

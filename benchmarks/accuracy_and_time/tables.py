@@ -93,6 +93,15 @@ def directions(lists):
     return _limits(lists, "directions", lambda each: f"M = {each['directions']}", "error")
 
 
+def nodes(lists):
+    """What the nodes of an operator may be off by."""
+    rows = []
+    for name, made in lists.items():
+        bias = made.nodes.get(main_component(made)[0])
+        rows.append([name, "no nodes" if bias is None else f"< {percent(bias)}"])
+    return table(["material", "bias of the slice"], rows)
+
+
 def _limits(lists, limit, heading, key):
     rows, header = [], []
     for name, made in lists.items():

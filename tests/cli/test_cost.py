@@ -75,9 +75,10 @@ def test_json_has_the_agreed_shape(made):
             assert price["seconds"] > 0.0 and price["cpu_seconds"] > 0.0 and price["uncertainty"] > 0.0
         # The first replicates may be better than any price asks for.
         assert prices[-1]["cpu_seconds"] >= prices[0]["cpu_seconds"]
-    assert data["limits"].keys() == {"subcells", "cells", "directions"}
+    assert data["limits"].keys() == {"subcells", "cells", "directions", "nodes"}
     assert [entry["n"] for entry in data["limits"]["subcells"]["models"]["ww09"]] == [1, 3, 5, 9, 15]
     assert [entry["directions"] for entry in data["limits"]["directions"]["reflection/internal"]] == [7, 15, 30]
+    assert data["limits"]["nodes"] == {}
     assert data["effects"].keys() == {"rough_interfaces", "absorption", "chromatic"}
     assert data["effects"]["absorption"]["ratio"] > 0.0
 

@@ -1,10 +1,13 @@
 """What limits besides noise, on made-up results whose answers are known; scenes without an effect."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from goniosim.report.cost.cells import finer_scene, lost_to_cells
 from goniosim.report.cost.directions import COUNTS, dense_scene, gaps, lost_between
+from goniosim.report.cost.nodes import node_bias
 from goniosim.report.cost.norms import difference, noise_of, norm_of
 from goniosim.report.cost.without import without_effects
 from goniosim.scene import effects
@@ -97,3 +100,13 @@ def test_inner_interfaces_and_the_way_out_below_can_be_left_out():
         "Dielectric",
     ]
     assert not found["transmission"][1].material.transmits
+
+
+def test_nodes_tell_their_worst_direction_that_is_lit():
+    parts = {
+        name: SimpleNamespace(node_bias=bias) for name, bias in ((NAME, np.array([1.0, 2.0, 9.0])), ("other", None))
+    }
+    rung = SimpleNamespace(
+        norm={NAME: np.array([10.0, 10.0, 0.0]), "other": np.ones(3)}, result=SimpleNamespace(components=parts)
+    )
+    assert node_bias(rung) == {NAME: 0.2}

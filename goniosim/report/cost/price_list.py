@@ -13,6 +13,7 @@ from .effects import added
 from .fit import fit
 from .ladder import FIRST, climb
 from .models import model_points
+from .nodes import node_bias
 from .prices import prices
 from .runs import ESTIMATORS, run
 from .subcells import subcell_errors
@@ -61,6 +62,8 @@ class PriceList:
     effects : dict of str to Added
     subcells, cells, directions : dict
         What limits besides noise, see `subcells`, `cells` and `directions`.
+    nodes : dict of str to float
+        By component, what the nodes of an operator may be off by, relative to the slice, in the worst direction.
     """
 
     scene: object
@@ -71,6 +74,7 @@ class PriceList:
     subcells: dict
     cells: dict
     directions: dict
+    nodes: dict
 
 
 def price_list(scene, max_seconds, models=False, say=lambda message: None):
@@ -113,6 +117,7 @@ def price_list(scene, max_seconds, models=False, say=lambda message: None):
         subcells=subcells,
         cells=cells,
         directions=directions,
+        nodes=node_bias(best[ESTIMATORS[0]]),
     )
 
 

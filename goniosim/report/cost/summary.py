@@ -59,6 +59,7 @@ def as_data(made):
             },
             "cells": made.cells,
             "directions": made.directions,
+            "nodes": made.nodes,
         },
     }
 
@@ -138,6 +139,7 @@ def _limit_lines(made):
     ):
         for name, several in found.items():
             lines.append(f"  {title}, {name}: " + ", ".join(shown(each) for each in several))
+    lines += [f"  nodes of the operator, {name}: {percent(bias)} at most" for name, bias in made.nodes.items()]
     return lines
 
 
