@@ -1,13 +1,13 @@
 """Nodes in polar angle and folded azimuth, with cubic Lagrange weights for what lies between them.
 
 Node (j, i) stands at the azimuth j h and the polar angle i h: ``bins[j, i, channel]``. Stencils have 4 x 4 nodes,
-one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2 they use every second
-node.
+one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2, values are looked up at
+every second node.
 """
 
 import math
 
-from ..._jit import scalar, stage
+from ..._jit import kernel, scalar, stage
 from ...optics.elementary import arctan2_first_quadrant, azimuth
 from ...slices.grid import HALF_PI
 
@@ -38,21 +38,80 @@ def mirrored(j, last):
 
 
 @stage
-def deposit(x, y, z, weights, ratio, stride, bins):
-    """Spread ``weights[channel] * ratio`` over the nodes around a direction."""
-    nodes = bins.shape[1] - 1
-    u, v = place(x, y, z, nodes, stride)
-    i, a0, a1, a2, a3 = cubic(u, 0, nodes // stride - 3)
-    last = 2 * (nodes // stride)
-    j, b0, b1, b2, b3 = cubic(v, -1, last - 1)
-    for s in range(4):
-        b = ratio * (b0 if s == 0 else (b1 if s == 1 else (b2 if s == 2 else b3)))
-        row = bins[mirrored(j + s, last) * stride]
-        for r in range(4):
-            a = b * (a0 if r == 0 else (a1 if r == 1 else (a2 if r == 2 else a3)))
-            node = row[(i + r) * stride]
-            for c in range(weights.shape[0]):
-                node[c] += a * weights[c]
+def stencils(x, y, z, ratios, n, nodes, polar, around, first):
+    """Find the nodes that ``n`` directions are spread over.
+
+    Parameters
+    ----------
+    nodes : int
+        Distances of 90 degrees.
+    polar, around : ndarray, shape (4, n)
+        Overwritten: weights in polar angle; and in azimuth, times the ray's ratio.
+    first : ndarray of int64, shape (2, n)
+        Overwritten: the first node in polar angle, and in azimuth, which may lie beyond 0 or pi.
+    """
+    _polar(x, y, z, n, nodes, first[0], polar[0], polar[1], polar[2], polar[3])
+    _around(x, y, ratios, n, nodes, first[1], around[0], around[1], around[2], around[3])
+
+
+@stage
+def _polar(x, y, z, n, nodes, first, a0, a1, a2, a3):
+    per_radian = nodes / HALF_PI
+    for i in range(n):
+        theta = arctan2_first_quadrant(math.sqrt(x[i] * x[i] + y[i] * y[i]), z[i])
+        first[i], a0[i], a1[i], a2[i], a3[i] = cubic(theta * per_radian, 0, nodes - 3)
+
+
+@stage
+def _around(x, y, ratios, n, nodes, first, b0, b1, b2, b3):
+    per_radian = nodes / HALF_PI
+    for i in range(n):
+        j, w0, w1, w2, w3 = cubic(azimuth(abs(y[i]), x[i]) * per_radian, -1, 2 * nodes - 1)
+        first[i] = j
+        b0[i] = w0 * ratios[i]
+        b1[i] = w1 * ratios[i]
+        b2[i] = w2 * ratios[i]
+        b3[i] = w3 * ratios[i]
+
+
+@stage
+def deposit(weights, slots, n, polar, around, first, bins):
+    """Spread ``weights[channel, ray]`` over the nodes that `stencils` has found.
+
+    Parameters
+    ----------
+    slots : ndarray
+        Which slice of the bins each ray belongs to.
+    bins : ndarray, shape (slices, channels, azimuths, polar angles)
+        Added to. Four nodes in a row are one vector, whatever the number of channels.
+    """
+    last = bins.shape[2] - 1
+    for i in range(n):
+        planes = bins[int(slots[i])]
+        start = first[0, i]
+        for s in range(4):
+            j = mirrored(first[1, i] + s, last)
+            for c in range(bins.shape[1]):
+                share = around[s, i] * weights[c, i]
+                row = planes[c, j][start : start + 4]
+                row[0] += share * polar[0, i]
+                row[1] += share * polar[1, i]
+                row[2] += share * polar[2, i]
+                row[3] += share * polar[3, i]
+
+
+@kernel
+def move_bins(bins, factor, arrivals):
+    """Write ``factor`` times ``bins[slice, group, channel, azimuth, polar]`` to
+    ``arrivals[group, azimuth, polar, slice, channel]``.
+    """
+    for g in range(bins.shape[1]):
+        for j in range(bins.shape[3]):
+            for r in range(bins.shape[0]):
+                for c in range(bins.shape[2]):
+                    row = bins[r, g, c, j]
+                    for i in range(row.shape[0]):
+                        arrivals[g, j, i, r, c] = factor * row[i]
 
 
 @stage
