@@ -153,8 +153,8 @@ class Workspace:
         target = np.array([variant.interface, variant.from_below, operator.ahead])
         light = operator.plan.light[direction]
         bins = operator.application.bins(self.space, stride)
-        bins[...] = 0.0
         some = bins[: len(keys) * operator.slots]
+        bins[len(some) :] = 0.0
         state, filled = self.walk[:2]
         state[:] = 0
         filled[:] = 0

@@ -10,7 +10,7 @@ from ..stages import ROUGH_CONDUCTOR
 from ..stages.smooth_conductor import ETA, KAPPA
 from . import cells, kernels
 from .azimuths import at_azimuths, cosines, to_coefficients, to_values
-from .nodes import move_bins
+from .bins import move_bins
 from .choice import IN, OUT, THROUGH, inner_index
 
 _NUMBER = 8
@@ -102,17 +102,17 @@ class Application:
         return np.empty(size), np.empty(size)
 
     def bins(self, space, stride):
-        """Where a walk bins arrivals at every ``stride``-th node, shape (replicates * slots, channels, azimuths, polar
-        angles): in the second array, which `apply` overwrites later.
+        """Where a walk bins arrivals at every ``stride``-th node, shape (replicates * slots, azimuths, polar angles *
+        channels): in the second array, which `apply` overwrites later.
         """
         nodes = self.nodes // stride
-        shape = (self.replicates * self.slots, self.plan.n_distinct, 2 * nodes + 1, nodes + 1)
+        shape = (self.replicates * self.slots, 2 * nodes + 1, (nodes + 1) * self.plan.n_distinct)
         return space[1][: math.prod(shape)].reshape(shape)
 
     def take(self, space, stride, factor):
         """Move ``factor`` times the bins to where `apply` expects them."""
         bins = self.bins(space, stride)
-        bins = bins.reshape(bins.shape[0], self.groups, -1, *bins.shape[2:])
+        bins = bins.reshape(*bins.shape[:2], self.nodes // stride + 1, self.groups, -1)
         arrivals = space[0].reshape(self.groups, 2 * self.nodes + 1, self.nodes + 1, bins.shape[0], -1)
         if stride > 1:
             arrivals[...] = 0.0

@@ -15,9 +15,10 @@ from ..stages import LAMBERT, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR
 from ..stages.lambert import RHO
 from ..stages.smooth_conductor import ETA, KAPPA
 from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
+from .bins import clear, deposit
 from .branches import absorb, colour, enter, find_brightest, forget, reflect, refract, scale, share_out
 from .facets import draw, draw_lattice, meet_facets
-from .nodes import deposit, stencils
+from .nodes import stencils
 from .rays import (
     AROUND,
     BRIGHTEST,
@@ -81,13 +82,14 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
         Events after which to return to the caller, who looks at signals.
     space : tuple
         As `rays.workspace` makes it; its first two arrays are cleared before a walk.
-    bins : ndarray, shape (replicates * slots, channels, azimuths, polar angles)
-        Sums of weights; added to.
+    bins : ndarray, shape (replicates * slots, azimuths, polar angles * channels)
+        Overwritten: sums of weights.
     """
     kinds, alphas, etas, spectral, taus, absorbs = stack
     state, filled, queues, batch, scratch, steps, lists, nodes = space
     last = kinds.shape[0] - 1
-    channels = bins.shape[1]
+    channels = taus.shape[1]
+    distances = bins.shape[1] // 2
     slots = bins.shape[0] // keys.shape[0]
     most = steps.shape[0]
     stop_at = state[EVENTS] + budget
@@ -102,6 +104,8 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
             replicate = state[REPLICATE]
             key = keys[replicate]
             number = state[LAUNCHED]
+            if number == 0:
+                clear(bins[replicate * slots : (replicate + 1) * slots])
             n = min(most, size - number)
             state[LAUNCHED] += n
             state[EVENTS] += n
@@ -134,7 +138,7 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
             absorb(batch, n, taus[medium], scratch)
         if k == target[0] and side == target[1]:
             polar, around = scratch[POLAR : POLAR + 4], scratch[AROUND : AROUND + 4]
-            stencils(batch[X], batch[Y], batch[Z], batch[RATIO], n, bins.shape[3] - 1, polar, around, nodes)
+            stencils(batch[X], batch[Y], batch[Z], batch[RATIO], n, distances, polar, around, nodes)
             deposit(batch[WEIGHT:], batch[SLOT], n, polar, around, nodes, bins)
         if slots > 1 and k == 0:
             _count_order(batch[SLOT], n, slots)

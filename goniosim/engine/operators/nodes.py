@@ -7,7 +7,7 @@ every second node.
 
 import math
 
-from ..._jit import kernel, scalar, stage
+from ..._jit import scalar, stage
 from ...optics.elementary import arctan2_first_quadrant, azimuth
 from ...slices.grid import HALF_PI
 
@@ -72,46 +72,6 @@ def _around(x, y, ratios, n, nodes, first, b0, b1, b2, b3):
         b1[i] = w1 * ratios[i]
         b2[i] = w2 * ratios[i]
         b3[i] = w3 * ratios[i]
-
-
-@stage
-def deposit(weights, slots, n, polar, around, first, bins):
-    """Spread ``weights[channel, ray]`` over the nodes that `stencils` has found.
-
-    Parameters
-    ----------
-    slots : ndarray
-        Which slice of the bins each ray belongs to.
-    bins : ndarray, shape (slices, channels, azimuths, polar angles)
-        Added to. Four nodes in a row are one vector, whatever the number of channels.
-    """
-    last = bins.shape[2] - 1
-    for i in range(n):
-        planes = bins[int(slots[i])]
-        start = first[0, i]
-        for s in range(4):
-            j = mirrored(first[1, i] + s, last)
-            for c in range(bins.shape[1]):
-                share = around[s, i] * weights[c, i]
-                row = planes[c, j][start : start + 4]
-                row[0] += share * polar[0, i]
-                row[1] += share * polar[1, i]
-                row[2] += share * polar[2, i]
-                row[3] += share * polar[3, i]
-
-
-@kernel
-def move_bins(bins, factor, arrivals):
-    """Write ``factor`` times ``bins[slice, group, channel, azimuth, polar]`` to
-    ``arrivals[group, azimuth, polar, slice, channel]``.
-    """
-    for g in range(bins.shape[1]):
-        for j in range(bins.shape[3]):
-            for r in range(bins.shape[0]):
-                for c in range(bins.shape[2]):
-                    row = bins[r, g, c, j]
-                    for i in range(row.shape[0]):
-                        arrivals[g, j, i, r, c] = factor * row[i]
 
 
 @stage
