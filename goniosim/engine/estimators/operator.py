@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from ..operators.application import Application, order_ahead
 from ..operators import rays
+from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals
 from ..operators.choice import IN, choose, inner_index
 from ..operators.gather import POINTS, TAILS, gather
@@ -19,7 +19,7 @@ from ..unit import BATCH
 BUDGET = 1 << 20
 # An event here, and a point of a cell, take as long as so many events of the analog walk; one of those as long as
 # so many multiplications of a product of matrices.
-EVENT, POINT, MULTIPLICATIONS = 9, 9, 300
+EVENT, POINT, MULTIPLICATIONS = 2, 9, 300
 _NUMBER = 8
 
 

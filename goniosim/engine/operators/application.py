@@ -97,13 +97,14 @@ class Application:
         return self.replicates * self.slots * self.plan.n_distinct // self.groups
 
     def workspace(self):
-        """Two arrays that `apply` goes back and forth between, beginning with the arrivals in the first."""
+        """Two arrays that `apply` goes back and forth between; it begins with the arrivals in the first."""
         size = self.groups * (2 * self.nodes + 1) * (self.nodes + 1) * self.columns
         return np.empty(size), np.empty(size)
 
     def bins(self, space, stride):
-        """Where a walk bins arrivals at every ``stride``-th node, shape (replicates * slots, azimuths, polar angles *
-        channels): in the second array, which `apply` overwrites later.
+        """Where a walk bins arrivals at every ``stride``-th node: in the second array, which `apply` overwrites later.
+
+        Shape (replicates * slots, azimuths, polar angles * channels).
         """
         nodes = self.nodes // stride
         shape = (self.replicates * self.slots, 2 * nodes + 1, (nodes + 1) * self.plan.n_distinct)
@@ -119,8 +120,9 @@ class Application:
         move_bins(bins, factor, arrivals[:, ::stride, ::stride])
 
     def apply(self, space):
-        """What leaves, shape (groups, azimuths or columns, polar angles or rows, replicates, slots, channels of a group).
+        """What leaves the interface.
 
+        Shape (groups, azimuths or columns, polar angles or rows, replicates, slots, channels of a group).
         ``space`` is overwritten, and holds what is returned.
         """
         there, here = space

@@ -2,7 +2,8 @@
 
 Light enters for certain. At inner interfaces both branches are followed: a coin would make the dim ones too rare. What
 an outermost interface lets through is not followed. As in `goniosim.engine.walk`, every interface has two queues, and
-batches of the fullest one meet it in loops without branches.
+batches of the fullest one meet it in loops without branches. Every ray carries the key of its random numbers, so that
+paths do not depend on what waits beside them.
 """
 
 import numpy as np
@@ -200,11 +201,11 @@ def _close_up(batch, n, channels, scratch, steps, lists):
     move(scratch[NEXT_Y], n, lists[1], m, batch[Y], 0)
     move(scratch[NEXT_Z], n, lists[1], m, batch[Z], 0)
     move(scratch[NEXT_KEY], n, lists[1], m, batch[KEY], 0)
-    # To a row that nothing is in, since places are read from what they overwrite.
-    move(batch[RATIO], n, lists[1], m, scratch[MOVED], 0)
     ratio = batch[RATIO]
+    moved = scratch[MOVED]
+    move(ratio, n, lists[1], m, moved, 0)
     for i in range(m):
-        ratio[i] = scratch[MOVED][i]
+        ratio[i] = moved[i]
     for c in range(channels):
         move(gain, n, lists[1], m, batch[WEIGHT + c], 0)
     return m

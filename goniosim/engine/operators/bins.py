@@ -8,6 +8,8 @@ from ..._jit import intrinsic, ir, kernel, stage, types
 from .nodes import mirrored
 
 _LANES = 4
+# Polar angles whose arrivals, of all slices, stay in the nearest cache while `move_bins` fills them.
+_BLOCK = 32
 _ROW = types.Array(types.float64, 1, "C")
 _VECTOR = ir.VectorType(ir.DoubleType(), _LANES)
 
@@ -126,13 +128,30 @@ def _add(typingctx, row, first, factor, a, b, c, d):
 
 @kernel
 def move_bins(bins, factor, arrivals):
-    """Write ``factor`` times ``bins[slice, azimuth, polar, group, channel]`` to
-    ``arrivals[group, azimuth, polar, slice, channel]``.
+    """Fill ``arrivals[group, azimuth, polar, slice, channel]``.
+
+    That is ``factor`` times ``bins[slice, azimuth, polar, group, channel]``.
     """
-    slices, azimuths, angles, groups, channels = bins.shape
+    angles, groups = bins.shape[2:4]
     for g in range(groups):
-        for j in range(azimuths):
-            for r in range(slices):
-                for c in range(channels):
-                    for i in range(angles):
-                        arrivals[g, j, i, r, c] = factor * bins[r, j, i, g, c]
+        for j in range(bins.shape[1]):
+            for first in range(0, angles, _BLOCK):
+                for r in range(bins.shape[0]):
+                    _move(bins[r, j], g, first, min(first + _BLOCK, angles), factor, arrivals[g, j], r)
+
+
+@stage
+def _move(bins, g, first, last, factor, arrivals, r):
+    if bins.shape[2] == 3:
+        for i in range(first, last):
+            arrivals[i, r, 0] = factor * bins[i, g, 0]
+            arrivals[i, r, 1] = factor * bins[i, g, 1]
+            arrivals[i, r, 2] = factor * bins[i, g, 2]
+    elif bins.shape[2] == 2:
+        for i in range(first, last):
+            arrivals[i, r, 0] = factor * bins[i, g, 0]
+            arrivals[i, r, 1] = factor * bins[i, g, 1]
+    else:
+        for c in range(bins.shape[2]):
+            for i in range(first, last):
+                arrivals[i, r, c] = factor * bins[i, g, c]

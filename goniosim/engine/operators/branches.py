@@ -5,7 +5,7 @@ from ...optics.fresnel import dielectric_transmittance, fresnel_conductor, fresn
 from ...optics.ggx import smith_g1
 from ...optics.lambert import cosine_direction
 from ...optics.medium import path_length, transmittance
-from .rays import BRIGHTEST, COSINE, FACET_X, FACET_Y, FACET_Z, FRACTION, GAIN, NEXT_X, NEXT_Y, NEXT_Z, PATH, WEIGHT, Z
+from .rays import COSINE, FACET_X, FACET_Y, FACET_Z, FRACTION, GAIN, NEXT_X, NEXT_Y, NEXT_Z, PATH, WEIGHT, Z
 
 
 @stage

@@ -1,8 +1,8 @@
 """Nodes in polar angle and folded azimuth, with cubic Lagrange weights for what lies between them.
 
 Node (j, i) stands at the azimuth j h and the polar angle i h: ``bins[j, i, channel]``. Stencils have 4 x 4 nodes,
-one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2, values are looked up at
-every second node.
+one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2, values are
+looked up at every second node.
 """
 
 import math
@@ -50,24 +50,27 @@ def stencils(x, y, z, ratios, n, nodes, polar, around, first):
     first : ndarray of int64, shape (2, n)
         Overwritten: the first node in polar angle, and in azimuth, which may lie beyond 0 or pi.
     """
-    _polar(x, y, z, n, nodes, first[0], polar[0], polar[1], polar[2], polar[3])
-    _around(x, y, ratios, n, nodes, first[1], around[0], around[1], around[2], around[3])
+    _place(x, y, z, n, nodes, polar[0], around[0])
+    _weigh_polar(n, nodes, first[0], polar[0], polar[1], polar[2], polar[3])
+    _weigh_around(ratios, n, nodes, first[1], around[0], around[1], around[2], around[3])
 
 
 @stage
-def _polar(x, y, z, n, nodes, first, a0, a1, a2, a3):
-    per_radian = nodes / HALF_PI
+def _place(x, y, z, n, nodes, u, v):
     for i in range(n):
-        theta = arctan2_first_quadrant(math.sqrt(x[i] * x[i] + y[i] * y[i]), z[i])
-        first[i], a0[i], a1[i], a2[i], a3[i] = cubic(theta * per_radian, 0, nodes - 3)
+        u[i], v[i] = place(x[i], y[i], z[i], nodes, 1)
 
 
 @stage
-def _around(x, y, ratios, n, nodes, first, b0, b1, b2, b3):
-    per_radian = nodes / HALF_PI
+def _weigh_polar(n, nodes, first, a0, a1, a2, a3):
     for i in range(n):
-        j, w0, w1, w2, w3 = cubic(azimuth(abs(y[i]), x[i]) * per_radian, -1, 2 * nodes - 1)
-        first[i] = j
+        first[i], a0[i], a1[i], a2[i], a3[i] = cubic(a0[i], 0, nodes - 3)
+
+
+@stage
+def _weigh_around(ratios, n, nodes, first, b0, b1, b2, b3):
+    for i in range(n):
+        first[i], w0, w1, w2, w3 = cubic(b0[i], -1, 2 * nodes - 1)
         b0[i] = w0 * ratios[i]
         b1[i] = w1 * ratios[i]
         b2[i] = w2 * ratios[i]
