@@ -5,7 +5,24 @@ from ...optics.fresnel import dielectric_transmittance, fresnel_conductor, fresn
 from ...optics.ggx import smith_g1
 from ...optics.lambert import cosine_direction
 from ...optics.medium import path_length, transmittance
-from .rays import COSINE, FACET_X, FACET_Y, FACET_Z, FRACTION, GAIN, NEXT_X, NEXT_Y, NEXT_Z, PATH, WEIGHT, Z
+from .rays import (
+    COSINE,
+    COSINE_BEYOND,
+    FACET_X,
+    FACET_Y,
+    FACET_Z,
+    FRACTION,
+    GAIN,
+    NEXT_X,
+    NEXT_Y,
+    NEXT_Z,
+    PATH,
+    REFLECTANCE,
+    WEIGHT,
+    X,
+    Y,
+    Z,
+)
 
 
 @stage
@@ -107,8 +124,28 @@ def _enter(x, z, n, alpha, eta, fx, fy, fz, cosines, ox, oy, oz, gain):
 
 
 @stage
-def reflect(x, y, z, n, alpha, fx, fy, fz, cosines, reflectance, ox, oy, oz, gain):
-    """The reflected rays; ``gain`` is their share."""
+def turn_back(batch, n, alpha, scratch):
+    """The reflected rays, and their share."""
+    _reflect(
+        batch[X],
+        batch[Y],
+        batch[Z],
+        n,
+        alpha,
+        scratch[FACET_X],
+        scratch[FACET_Y],
+        scratch[FACET_Z],
+        scratch[COSINE],
+        scratch[REFLECTANCE],
+        scratch[NEXT_X],
+        scratch[NEXT_Y],
+        scratch[NEXT_Z],
+        scratch[GAIN],
+    )
+
+
+@stage
+def _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, reflectance, ox, oy, oz, gain):
     for i in range(n):
         along = 2.0 * cosines[i]
         height = along * fz[i] - z[i]
@@ -119,8 +156,30 @@ def reflect(x, y, z, n, alpha, fx, fy, fz, cosines, reflectance, ox, oy, oz, gai
 
 
 @stage
-def refract(x, y, z, n, alpha, eta, fx, fy, fz, cosines, reflectance, beyond, ox, oy, oz, gain):
-    """The refracted rays; ``gain`` is their share."""
+def go_through(batch, n, alpha, eta, scratch):
+    """The refracted rays, and their share."""
+    _refract(
+        batch[X],
+        batch[Y],
+        batch[Z],
+        n,
+        alpha,
+        eta,
+        scratch[FACET_X],
+        scratch[FACET_Y],
+        scratch[FACET_Z],
+        scratch[COSINE],
+        scratch[REFLECTANCE],
+        scratch[COSINE_BEYOND],
+        scratch[NEXT_X],
+        scratch[NEXT_Y],
+        scratch[NEXT_Z],
+        scratch[GAIN],
+    )
+
+
+@stage
+def _refract(x, y, z, n, alpha, eta, fx, fy, fz, cosines, reflectance, beyond, ox, oy, oz, gain):
     inverse = 1.0 / eta
     for i in range(n):
         along = cosines[i] * inverse - beyond[i]

@@ -10,6 +10,8 @@ from ..unit import BATCH, queue_capacity
 # it belongs to, and its weights.
 X, Y, Z, RATIO, KEY, SLOT, WEIGHT = range(7)
 
+LEAST_COSINE = 1e-9
+
 # Rows of scratch of a batch.
 FACET_X, FACET_Y, FACET_Z, COSINE, WIDTH = range(5)  # the microfacet, and the width of the distribution it is from
 REFLECTANCE, COSINE_BEYOND, BRIGHTEST = 5, 6, 7  # at the microfacet; the largest weight of a ray
