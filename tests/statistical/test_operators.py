@@ -130,7 +130,7 @@ def test_memory_is_told_from_shapes():
         kept = sum(kernel.nbytes for kernel in made.application.kernels)
         assert kept < shared
         workspace = made.workspace()
-        arrays = [*workspace.space, workspace.bins]
+        arrays = [*workspace.space, *workspace.walk]
         assert sum(array.nbytes for array in arrays) < own < 3.0 * sum(array.nbytes for array in arrays)
 
 

@@ -8,14 +8,16 @@ import pytest
 from goniosim._jit import kernel
 from goniosim.engine.estimators.operator import Operator
 from goniosim.engine.layout import DOWN, UP
-from goniosim.engine.operators import cells, kernels, nodes
-from goniosim.engine.operators.arrivals import bin_arrivals, waiting_rays
+from goniosim.engine.operators import cells, kernels, nodes, rays
+from goniosim.engine.operators.arrivals import bin_arrivals
 from goniosim.engine.operators.azimuths import at_azimuths, cosines, end_weights, to_coefficients, to_values
-from goniosim.engine.operators.facets import meet_facet
+from goniosim.engine.operators.bins import deposit, move_bins
+from goniosim.engine.operators.facets import choose_width, meet_facet
 from goniosim.engine.plan import make_plan
-from goniosim.engine.unit import child_key
+from goniosim.engine.sorting import LANES
+from goniosim.engine.unit import BATCH, child_key
 from goniosim.optics.microfacet import microfacet_transmission
-from goniosim.optics.random import uniform
+from goniosim.optics.random import random_sincos, uniform
 from reference.cell_integrals import integrate_cells
 from reference.closed_forms import reflection_density, transmission_density
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
@@ -24,8 +26,12 @@ NODES = 90
 
 
 @kernel
-def _spread(x, y, z, weights, stride, bins):
-    nodes.deposit(x, y, z, weights, 1.0, stride, bins)
+def _spread(directions, ratios, weights, bins):
+    n = directions.shape[1]
+    x, y, z = directions
+    polar, around, first = np.empty((4, n)), np.empty((4, n)), np.empty((2, n), np.int64)
+    nodes.stencils(x, y, z, ratios, n, bins.shape[1] // 2, polar, around, first)
+    deposit(weights, np.zeros(n), n, polar, around, first, bins)
 
 
 @kernel
@@ -41,14 +47,20 @@ def _directions():
     return theta, phi, np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
 
 
-@pytest.mark.parametrize("stride", [1, 2])
-def test_stencils_reproduce_cubics_and_spread_what_they_look_at(stride):
-    """A cubic of the polar angle exactly, harmonics of the azimuth to the fourth order; deposit is the adjoint."""
+def _functions():
+    """Two at all nodes, shape (2 NODES + 1, NODES + 1, 2)."""
     polar = np.linspace(0.0, math.pi / 2, NODES + 1)
     around = np.linspace(0.0, math.pi, 2 * NODES + 1)
     values = np.empty((2 * NODES + 1, NODES + 1, 2))
     values[..., 0] = 1.0 + polar - 2.0 * polar**2 + 0.7 * polar**3
     values[..., 1] = (1.0 + polar**2) * np.cos(2.0 * around)[:, None]
+    return values
+
+
+@pytest.mark.parametrize("stride", [1, 2])
+def test_stencils_reproduce_cubics(stride):
+    """A cubic of the polar angle exactly, harmonics of the azimuth to the fourth order."""
+    values = _functions()
     for theta, phi, v in zip(*_directions(), strict=True):
         found = np.empty(2)
         _look(*v, stride, values, found)
@@ -57,10 +69,35 @@ def test_stencils_reproduce_cubics_and_spread_what_they_look_at(stride):
         # At the pole there is no azimuth.
         harmonic = (1.0 + theta**2) * math.cos(2.0 * phi)
         assert theta == 0.0 or found[1] == pytest.approx(harmonic, abs=2.0 * (2.0 * h) ** 4)
-        bins = np.zeros_like(values)
-        _spread(*v, np.array([0.25, 3.0]), stride, bins)
-        assert bins.sum(axis=(0, 1)) == pytest.approx([0.25, 3.0], abs=1e-12)
-        assert (bins * values).sum(axis=(0, 1)) == pytest.approx([0.25, 3.0] * found, abs=1e-12)
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 5])
+def test_deposits_spread_what_stencils_look_at(channels):
+    """Whatever the number of channels, for each of which there is code; and nothing else."""
+    values = _functions()
+    directions = _directions()[2]
+    weights = np.random.default_rng(4).random((channels, len(directions)))
+    expected = np.zeros((channels, 2))
+    sums = np.zeros(channels)
+    for number, v in enumerate(directions):
+        found = np.empty(2)
+        _look(*v, 1, values, found)
+        expected += 3.0 * weights[:, number, None] * found
+        sums += 3.0 * weights[:, number]
+    bins = np.zeros((1, 2 * NODES + 1, (NODES + 1) * channels))
+    ratios = np.full(len(directions), 3.0)
+    _spread(np.ascontiguousarray(directions.T), ratios, weights, bins)
+    bins = bins.reshape(2 * NODES + 1, NODES + 1, channels)
+    assert bins.sum(axis=(0, 1)) == pytest.approx(sums, rel=1e-12)
+    assert np.einsum("jic,jif->cf", bins, values) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("groups", "channels"), [(1, 1), (1, 2), (1, 3), (1, 5), (3, 1)])
+def test_bins_move_to_where_products_expect_them(groups, channels):
+    made = np.random.default_rng(5).random((4, 7, 40, groups, channels))
+    arrivals = np.empty((groups, 7, 40, 4, channels))
+    move_bins(made, 0.5, arrivals)
+    assert np.array_equal(arrivals, 0.5 * made.transpose(3, 1, 2, 0, 4))
 
 
 def test_series_convolve():
@@ -140,9 +177,11 @@ def test_transmission_is_reciprocal():
 @kernel
 def _draw(x, z, alpha, key, out):
     for i in range(out.shape[0]):
-        u1, u2, u3 = uniform(key, 3 * i), uniform(key, 3 * i + 1), uniform(key, 3 * i + 2)
-        _, _, out[i, 0], _ = meet_facet(x, 0.0, z, alpha, u1, u2, 1.0)
-        _, _, out[i, 1], out[i, 2] = meet_facet(x, 0.0, z, alpha, u1, u2, u3)
+        sine, cosine = random_sincos(key, 3 * i)
+        u = uniform(key, 3 * i + 1)
+        width = choose_width(alpha, uniform(key, 3 * i + 2))
+        _, _, out[i, 0], _ = meet_facet(x, 0.0, z, alpha, alpha, cosine, sine, u)
+        _, _, out[i, 1], out[i, 2] = meet_facet(x, 0.0, z, alpha, width, cosine, sine, u)
 
 
 @pytest.mark.parametrize("alpha", [0.001, 0.2, 1.0])
@@ -158,21 +197,44 @@ def test_facets_of_the_mixture_have_the_plain_distribution(alpha, deg):
     assert abs(tilt.mean() - other.mean()) < 4.5 * math.sqrt((tilt.var() + other.var()) / len(ratio))
 
 
-def test_a_full_pile_of_waiting_rays_costs_noise_only():
-    """With room for one ray a coin chooses the branch: the same mean within 4.5 sigma of both, false alarm 7e-6."""
-    layers = [dielectric(1.5, 0.3), dielectric(2.0, 0.2), dielectric(1.3, 0.2), conductor(0.2, 3.0, 0.2)]
+FOUR = [dielectric(1.5, 0.3), dielectric(2.0, 0.2), dielectric(1.3, 0.2), conductor(0.2, 3.0, 0.2)]
+
+
+def _bin(layers, size, keys, crowd=rays.CROWD * BATCH, budget=1 << 20):
+    """Arrivals at the top of each replicate."""
     plan = make_plan(make_scene(layers, 40.0))
     stack = (plan.kinds, plan.alphas, plan.etas, plan.spectral, plan.taus, plan.absorbs)
-    target = np.array([0, 1, 0, 1])
+    bins = np.empty((len(keys), 2 * NODES + 1, (NODES + 1) * plan.n_distinct))
+    space = rays.workspace(plan)
+    target = np.array([0, 1, 0])
+    highest = 0
+    while not bin_arrivals(stack, plan.light[0], target, size, np.array(keys), crowd, budget, space, bins):
+        highest = max(highest, space[1].max())
+    assert highest <= space[2].shape[2] - LANES
+    return bins
+
+
+def test_a_crowd_of_waiting_rays_costs_noise_only():
+    """Where a coin chooses every branch: the same mean within 4.5 sigma of both, false alarm 7e-6."""
     totals = np.empty((2, 40))
-    for i, room in enumerate((1, 64)):
-        for r in range(40):
-            bins = np.zeros((1, 2 * NODES + 1, NODES + 1, plan.n_distinct))
-            bin_arrivals(stack, plan.light[0], target, 0, 200, child_key(i, r), waiting_rays(plan, room), bins)
-            totals[i, r] = bins.sum()
+    for i, crowd in enumerate((-1, rays.CROWD * BATCH)):
+        keys = [child_key(i, r) for r in range(40)]
+        totals[i] = _bin(FOUR, 200, keys, crowd).sum(axis=(1, 2))
     mean, error = totals.mean(axis=1), totals.std(axis=1, ddof=1) / math.sqrt(40)
     assert abs(mean[0] - mean[1]) < 4.5 * math.hypot(*error)
     assert mean[1] > 10.0
+    # Both branches tell more than one.
+    assert error[1] < error[0]
+
+
+def test_paths_depend_neither_on_batches_nor_on_calls():
+    """One call or many: the same bits; alone or beside other replicates: the same rays, summed in another order."""
+    layers = [FOUR[0], FOUR[1], FOUR[3]]
+    keys = [child_key(9, r) for r in range(3)]
+    together = _bin(layers, 700, keys)
+    assert np.array_equal(_bin(layers, 700, keys, budget=1), together)
+    for key, expected in zip(keys, together, strict=True):
+        assert _bin(layers, 700, [key])[0] == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
 TAU = medium(0.1)

@@ -4,18 +4,22 @@ Every arrival meets every cell, so that a few thousand light paths do the work o
 which `Operator.coarse_minus_fine` bounds.
 """
 
+import math
+
 import numpy as np
 
+from ..operators import rays
 from ..operators.application import Application, order_ahead
-from ..operators.arrivals import bin_arrivals, waiting_rays
+from ..operators.arrivals import bin_arrivals
 from ..operators.choice import IN, choose, inner_index
 from ..operators.gather import POINTS, TAILS, gather
+from ..unit import BATCH
 
-# Light paths between two looks at `stop`: some tens of milliseconds.
-PATHS_PER_CALL = 1 << 13
+# Events of the walk between two looks at `stop`: some tens of milliseconds.
+BUDGET = 1 << 20
 # An event here, and a point of a cell, take as long as so many events of the analog walk; one of those as long as
 # so many multiplications of a product of matrices.
-EVENT, POINT, MULTIPLICATIONS = 9, 9, 300
+EVENT, POINT, MULTIPLICATIONS = 2, 9, 300
 _NUMBER = 8
 
 
@@ -61,9 +65,10 @@ class Operator:
     def memory(self):
         """Bytes shared by all threads, and bytes of one workspace."""
         shared, own = self.application.memory
-        channels = self.slots * self.plan.n_distinct
-        # The bins of one replicate, and its values for the cells.
-        return shared, own + 2 * _NUMBER * (2 * self.nodes + 1) * (self.nodes + 1) * channels
+        walk = sum(math.prod(shape) for shape in rays.shapes(self.plan).values())
+        # Besides the walk, the values of one replicate for the cells.
+        values = (2 * self.nodes + 1) * (self.nodes + 1) * self.slots * self.plan.n_distinct
+        return shared, own + _NUMBER * (walk + values)
 
     def workspace(self):
         """Arrays of one thread."""
@@ -97,8 +102,7 @@ class Workspace:
         plan, variant = operator.plan, operator.variant
         self.operator = operator
         self.space = operator.application.workspace()
-        self.bins = np.empty((operator.slots, 2 * operator.nodes + 1, operator.nodes + 1, plan.n_distinct))
-        self.waiting = waiting_rays(plan)
+        self.walk = rays.workspace(plan)
         self.stack = (plan.kinds, plan.alphas, plan.etas, plan.spectral, plan.taus, plan.absorbs)
         self.exits = self.source = np.empty(0)
         if variant.leaves == IN:
@@ -130,15 +134,10 @@ class Workspace:
             Ray-interface events, or what costs as much; None if it was given up.
         """
         operator = self.operator
-        arrivals = operator.application.arrivals(self.space)
-        arrivals[...] = 0.0
-        events = 0
-        for r, key in enumerate(keys):
-            found = self._walk(direction, size, key, stop, stride)
-            if found is None:
-                return None
-            events += EVENT * found
-            self._take(r, arrivals, size)
+        found = self._walk(direction, size, keys, stop, stride)
+        if found is None:
+            return None
+        events = EVENT * found
         values = operator.application.apply(self.space)
         events += operator.application.multiplications // MULTIPLICATIONS
         for r, key in enumerate(keys):
@@ -147,26 +146,25 @@ class Workspace:
             events += self._cells(direction, key, values[:, :, :, r], out[r], stride)
         return events
 
-    def _walk(self, direction, size, key, stop, stride):
-        variant = self.operator.variant
-        target = np.array([variant.interface, variant.from_below, self.operator.ahead, stride])
-        light = self.operator.plan.light[direction]
-        self.bins[...] = 0.0
-        events = 0
-        for first in range(0, size, PATHS_PER_CALL):
+    def _walk(self, direction, size, keys, stop, stride):
+        """Bin the arrivals of all replicates where `Application.apply` expects them; returns events of the walk."""
+        operator = self.operator
+        variant = operator.variant
+        target = np.array([variant.interface, variant.from_below, operator.ahead])
+        light = operator.plan.light[direction]
+        bins = operator.application.bins(self.space, stride)
+        some = bins[: len(keys) * operator.slots]
+        bins[len(some) :] = 0.0
+        state, filled = self.walk[:2]
+        state[:] = 0
+        filled[:] = 0
+        paths = np.array(keys, np.uint64)
+        crowd = rays.CROWD * BATCH
+        while not bin_arrivals(self.stack, light, target, size, paths, crowd, BUDGET, self.walk, some):
             if stop is not None and stop.is_set():
                 return None
-            last = min(size, first + PATHS_PER_CALL)
-            events += bin_arrivals(self.stack, light, target, first, last, key, self.waiting, self.bins)
-        return events
-
-    def _take(self, r, arrivals, size):
-        """Put the bins of a replicate where the products of matrices expect them."""
-        groups, channels = arrivals.shape[0], arrivals.shape[-1]
-        self.bins *= 1.0 / size
-        for g in range(groups):
-            some = self.bins[..., g * channels : (g + 1) * channels]
-            arrivals[g, :, :, r] = np.moveaxis(some, 0, 2)
+        operator.application.take(self.space, stride, 1.0 / size)
+        return int(state[rays.EVENTS])
 
     def _cells(self, direction, key, values, out, stride):
         """Fill the slices of a replicate from ``values[group, azimuth, polar, slot, channel]``; returns events."""

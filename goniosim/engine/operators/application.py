@@ -10,6 +10,7 @@ from ..stages import ROUGH_CONDUCTOR
 from ..stages.smooth_conductor import ETA, KAPPA
 from . import cells, kernels
 from .azimuths import at_azimuths, cosines, to_coefficients, to_values
+from .bins import move_bins
 from .choice import IN, OUT, THROUGH, inner_index
 
 _NUMBER = 8
@@ -96,18 +97,32 @@ class Application:
         return self.replicates * self.slots * self.plan.n_distinct // self.groups
 
     def workspace(self):
-        """Two arrays that `apply` goes back and forth between; `arrivals` yields the first in its shape."""
+        """Two arrays that `apply` goes back and forth between; it begins with the arrivals in the first."""
         size = self.groups * (2 * self.nodes + 1) * (self.nodes + 1) * self.columns
         return np.empty(size), np.empty(size)
 
-    def arrivals(self, space):
-        """Where arrivals belong, shape (groups, azimuths, polar angles, replicates, slots, channels of a group)."""
-        shape = (self.groups, 2 * self.nodes + 1, self.nodes + 1, self.replicates, self.slots, -1)
-        return space[0].reshape(shape)
+    def bins(self, space, stride):
+        """Where a walk bins arrivals at every ``stride``-th node: in the second array, which `apply` overwrites later.
+
+        Shape (replicates * slots, azimuths, polar angles * channels).
+        """
+        nodes = self.nodes // stride
+        shape = (self.replicates * self.slots, 2 * nodes + 1, (nodes + 1) * self.plan.n_distinct)
+        return space[1][: math.prod(shape)].reshape(shape)
+
+    def take(self, space, stride, factor):
+        """Move ``factor`` times the bins to where `apply` expects them."""
+        bins = self.bins(space, stride)
+        bins = bins.reshape(*bins.shape[:2], self.nodes // stride + 1, self.groups, -1)
+        arrivals = space[0].reshape(self.groups, 2 * self.nodes + 1, self.nodes + 1, bins.shape[0], -1)
+        if stride > 1:
+            arrivals[...] = 0.0
+        move_bins(bins, factor, arrivals[:, ::stride, ::stride])
 
     def apply(self, space):
-        """What leaves, in the layout of `arrivals`, with azimuths or columns, and polar angles or rows.
+        """What leaves the interface.
 
+        Shape (groups, azimuths or columns, polar angles or rows, replicates, slots, channels of a group).
         ``space`` is overwritten, and holds what is returned.
         """
         there, here = space

@@ -1,214 +1,191 @@
 """The forward walk that only bins what arrives at one interface.
 
 Light enters for certain. At inner interfaces both branches are followed: a coin would make the dim ones too rare. What
-an outermost interface lets through is not followed.
+an outermost interface lets through is not followed. As in `goniosim.engine.walk`, every interface has two queues, and
+batches of the fullest one meet it in loops without branches. Every ray carries the key of its random numbers, so that
+paths do not depend on what waits beside them, but for the coin that takes the place of both branches in a crowd.
 """
 
-import numpy as np
-
 from ..._jit import kernel, stage
-from ...optics.fresnel import dielectric_transmittance, fresnel_conductor, fresnel_dielectric
-from ...optics.ggx import smith_g1
-from ...optics.lambert import sample_cosine
-from ...optics.medium import path_length, transmittance
-from ...optics.random import derive_key, uniform
-from ..lattice import DIMENSIONS, STEPS, coordinate
-from ..stages import LAMBERT, ROUGH_CONDUCTOR, ROUGH_DIELECTRIC, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
+from ...optics.random import derive_key
+from ..lattice import DIMENSIONS
+from ..stages import LAMBERT, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR
 from ..stages.lambert import RHO
 from ..stages.smooth_conductor import ETA, KAPPA
-from .facets import meet_facet
-from .nodes import deposit
+from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
+from .bins import clear, deposit
+from .branches import absorb, colour, enter, find_brightest, forget, go_through, scale, share_out, turn_back
+from .facets import draw, draw_lattice, meet_facets
+from .nodes import stencils
+from .queues import close_up, derive_keys, launch, play, pop, push, toss
+from .rays import (
+    AROUND,
+    BRIGHTEST,
+    COSINE,
+    COSINE_BEYOND,
+    EVENTS,
+    FACET_X,
+    FACET_Y,
+    FACET_Z,
+    GAIN,
+    KEY,
+    LAUNCHED,
+    LEAST_COSINE,
+    NEXT_KEY,
+    NEXT_X,
+    NEXT_Y,
+    NEXT_Z,
+    POLAR,
+    RATIO,
+    REFLECTANCE,
+    REPLICATE,
+    ROUNDS,
+    SLOT,
+    WEIGHT,
+    X,
+    Y,
+    Z,
+)
 
 # Children of a replicate's key: the shifts of its lattice, its paths.
 SHIFTS, PATHS = 0, 1
-# A ray that would be fainter than this, had its facets been drawn from plain distributions, plays Russian roulette.
-FAINT = 0.01
-# Rays of one path that may wait. If there is no room for both branches, a coin with fair weights chooses one.
-WAITING = 64
-# Interfaces that a path meets at most, all its branches together.
-MOST_EVENTS = 10_000
-
-# A ray that waits: its view of the next interface, the ratio of densities, where and how it arrives, its order.
-X, Y, Z, RATIO, INTERFACE, DOWNWARDS, ORDER, WEIGHT = range(8)
-# Numbers that an event draws: facet or direction, roulette of the two branches, coin.
-_DRAWS = 6
-_LEAST_COSINE = 1e-9
-
-
-def waiting_rays(plan, room=WAITING):
-    """An array for the rays of one path that wait."""
-    return np.empty((room, WEIGHT + plan.n_distinct))
+# Dimensions of the lattice that entry takes; the first event inside takes the rest.
+_ENTRY = DIMENSIONS // 2
 
 
 @kernel
-def bin_arrivals(stack, light, target, first, last, key, waiting, bins):
-    """Trace paths ``first`` to ``last - 1`` of a replicate and spread what arrives over the nodes.
+def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
+    """Advance the walk of some replicates by about ``budget`` events; returns whether it is finished.
 
     Parameters
     ----------
     stack : tuple
         Tables of `plan.Plan`: kinds, alphas, etas, spectral, taus, absorbs.
     light : ndarray, shape (3,)
-    target : ndarray of int64, shape (4,)
+    target : ndarray of int64, shape (3,)
         The interface; 1 if light arrives at it from below; number of the order that a path has if it leaves without
-        another event on the top interface, less its order on arrival; every ``stride``-th node is used.
-    key : uint64
-        Of the replicate.
-    waiting : ndarray
-        As `waiting_rays` makes it.
-    bins : ndarray, shape (slots, azimuths, polar angles, channels)
-        Sums of weights; added to.
-
-    Returns
-    -------
-    int
-        Ray-interface events.
+        another event on the top interface, less its order on arrival.
+    size : int
+        Paths of a replicate.
+    keys : ndarray of uint64
+        Of the replicates.
+    crowd : int
+        Rays in the fullest queue, above which an inner interface does not branch.
+    budget : int
+        Events after which to return to the caller, who looks at signals.
+    space : tuple
+        As `rays.workspace` makes it; its first two arrays are cleared before a walk.
+    bins : ndarray, shape (replicates * slots, azimuths, polar angles * channels)
+        Overwritten: sums of weights.
     """
-    ray = np.empty(waiting.shape[1])
-    shifts = np.empty(DIMENSIONS)
-    shifts_key = derive_key(key, SHIFTS)
-    for dimension in range(DIMENSIONS):
-        shifts[dimension] = uniform(shifts_key, dimension)
-    paths_key = derive_key(key, PATHS)
-    events = 0
-    for number in range(first, last):
-        path_key = derive_key(paths_key, number)
-        n = _enter(light, stack, shifts, number, waiting)
-        met = 0
-        while n > 0 and met < MOST_EVENTS:
-            n -= 1
-            for field in range(ray.shape[0]):
-                ray[field] = waiting[n, field]
-            _arrive(ray, stack, target, bins)
-            counter = met * _DRAWS
-            u1 = uniform(path_key, counter)
-            u2 = uniform(path_key, counter + 1)
-            u3 = uniform(path_key, counter + 2)
-            if met == 0:
-                u1 = coordinate(shifts[3], number, STEPS[3])
-                u2 = coordinate(shifts[4], number, STEPS[4])
-                u3 = coordinate(shifts[5], number, STEPS[5])
-            met += 1
-            n = _scatter(ray, stack, u1, u2, u3, path_key, counter + 3, waiting, n)
-        events += met + 1
-    return events
+    kinds, alphas, etas, spectral, taus, absorbs = stack
+    state, filled, queues, batch, scratch, steps, lists, nodes = space
+    last = kinds.shape[0] - 1
+    channels = taus.shape[1]
+    distances = bins.shape[1] // 2
+    slots = bins.shape[0] // keys.shape[0]
+    most = steps.shape[0]
+    stop_at = state[EVENTS] + budget
+    while state[EVENTS] < stop_at:
+        q = fullest(filled)
+        crowded = filled[q] > crowd
+        if state[LAUNCHED] == size and state[REPLICATE] < keys.shape[0]:
+            state[REPLICATE] += 1
+            state[LAUNCHED] = 0
+        starts = filled[q] < most and state[REPLICATE] < keys.shape[0]
+        if starts:
+            replicate = state[REPLICATE]
+            key = keys[replicate]
+            number = state[LAUNCHED]
+            if number == 0:
+                clear(bins[replicate * slots : (replicate + 1) * slots])
+            n = min(most, size - number)
+            state[LAUNCHED] += n
+            state[EVENTS] += n
+            launch(batch, n, light, number, replicate * slots + min(1 + target[2], slots - 1), scratch[NEXT_KEY])
+            draw_lattice(scratch[NEXT_KEY], n, alphas[0], derive_key(key, SHIFTS), 0, scratch)
+            meet_facets(batch, n, alphas[0], scratch)
+            enter(light, n, alphas[0], etas[0], scratch)
+            n = close_up(batch, n, channels, scratch, steps, lists)
+            q = 2 + ABOVE
+        elif filled[q] == 0:
+            return True
+        else:
+            if state[REPLICATE] == keys.shape[0]:
+                state[ROUNDS] += 1
+                if state[ROUNDS] > MAX_ROUNDS * filled.shape[0]:
+                    # As in the analog walk: what is still inside is lost.
+                    return True
+            n = min(most, filled[q])
+            filled[q] -= n
+            pop(queues[q], filled[q], batch, n)
 
+        k = q // 2
+        side = q % 2
+        kind = kinds[k]
+        eta = etas[k] if side == ABOVE else 1.0 / etas[k]
+        medium = k - 1 if side == ABOVE else k
+        state[EVENTS] += n
+        _lift(batch[Z], n)
+        if absorbs[medium]:
+            absorb(batch, n, taus[medium], scratch)
+        if k == target[0] and side == target[1]:
+            polar, around = scratch[POLAR : POLAR + 4], scratch[AROUND : AROUND + 4]
+            stencils(batch[X], batch[Y], batch[Z], batch[RATIO], n, distances, polar, around, nodes)
+            deposit(batch[WEIGHT:], batch[SLOT], n, polar, around, nodes, bins)
+        if slots > 1 and k == 0:
+            _count_order(batch[SLOT], n, slots)
 
-@stage
-def _enter(light, stack, shifts, number, waiting):
-    """Put the ray that has entered the stack on the pile; returns the height of the pile."""
-    _, alphas, etas, _, _, _ = stack
-    alpha = alphas[0]
-    eta = etas[0]
-    u1 = coordinate(shifts[0], number, STEPS[0])
-    u2 = coordinate(shifts[1], number, STEPS[1])
-    u3 = coordinate(shifts[2], number, STEPS[2])
-    x = light[0]
-    z = max(light[2], _LEAST_COSINE)
-    mx, my, mz, ratio = meet_facet(x, 0.0, z, alpha, u1, u2, u3)
-    cosine = min(1.0, max(0.0, x * mx + z * mz))
-    _, cos_t = fresnel_dielectric(cosine, eta)
-    along = cosine / eta - cos_t
-    ray = waiting[0]
-    ray[X] = x / eta - along * mx
-    ray[Y] = -along * my
-    ray[Z] = z / eta - along * mz
-    ray[RATIO] = ratio
-    ray[INTERFACE] = 1.0
-    ray[DOWNWARDS] = 1.0
-    ray[ORDER] = 1.0
-    gain = dielectric_transmittance(cosine, eta) * smith_g1(ray[Z], alpha)
-    for field in range(WEIGHT, ray.shape[0]):
-        ray[field] = gain
-    return 1 if gain > 0.0 else 0
-
-
-@stage
-def _arrive(ray, stack, target, bins):
-    """Absorb what the way to the interface costs, and count the ray if it is the one in question."""
-    _, _, _, _, taus, absorbs = stack
-    k = int(ray[INTERFACE])
-    downwards = ray[DOWNWARDS] > 0.0
-    ray[Z] = max(ray[Z], _LEAST_COSINE)
-    medium = k - 1 if downwards else k
-    if absorbs[medium]:
-        path = path_length(ray[Z])
-        for c in range(bins.shape[3]):
-            ray[WEIGHT + c] *= transmittance(taus[medium, c], path)
-    if k == target[0] and downwards == (target[1] == 0):
-        slot = min(int(ray[ORDER]) + target[2], bins.shape[0] - 1)
-        deposit(ray[X], ray[Y], ray[Z], ray[WEIGHT:], ray[RATIO], target[3], bins[slot])
-    ray[ORDER] += 1.0 if k == 0 else 0.0
-
-
-@stage
-def _scatter(ray, stack, u1, u2, u3, key, counter, waiting, n):
-    """Put what an interface sends back into the stack on the pile; returns the height of the pile."""
-    kinds, alphas, etas, spectral, _, _ = stack
-    k = int(ray[INTERFACE])
-    kind = kinds[k]
-    u = uniform(key, counter)
-    if kind == LAMBERT:
-        x, y, z = sample_cosine(u1, u2)
-        return _keep(ray, x, y, z, 1.0, 0.0, False, kind, spectral[k], u, waiting, n)
-    x = ray[X]
-    y = ray[Y]
-    z = ray[Z]
-    alpha = alphas[k]
-    eta = etas[k] if ray[DOWNWARDS] > 0.0 else 1.0 / etas[k]
-    mx, my, mz, ratio = meet_facet(x, y, z, alpha, u1, u2, u3)
-    ray[RATIO] *= ratio
-    cosine = min(1.0, max(0.0, x * mx + y * my + z * mz))
-    reflectance, cos_t = fresnel_dielectric(cosine, eta)
-    passes = 1.0 - reflectance
-    dielectric = kind in (ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC)
-    # What an outermost interface lets through is not followed, and a conductor's reflectance is that of each channel.
-    inner = dielectric and 0 < k < kinds.shape[0] - 1
-    reflectance = reflectance if dielectric else 1.0
-    if inner and n + 2 > waiting.shape[0]:
-        reflectance = 1.0 if uniform(key, counter + 2) < reflectance else 0.0
-        passes = 1.0 - reflectance
-    along = 2.0 * cosine
-    oz = along * mz - z
-    gain = reflectance * smith_g1(oz, alpha)
-    n = _keep(ray, x - along * mx, y - along * my, oz, gain, cosine, False, kind, spectral[k], u, waiting, n)
-    if inner:
-        along = cosine / eta - cos_t
-        oz = z / eta - along * mz
-        gain = passes * smith_g1(oz, alpha)
-        ox = x / eta - along * mx
-        oy = y / eta - along * my
-        u = uniform(key, counter + 1)
-        n = _keep(ray, ox, oy, oz, gain, cosine, True, kind, spectral[k], u, waiting, n)
-    return n
-
-
-@stage
-def _keep(ray, x, y, z, gain, cosine, through, kind, spectral, u, waiting, n):
-    """One ray onto the pile, unless it ended or lost at roulette; returns the height of the pile."""
-    if z <= 0.0 or gain <= 0.0:
-        return n
-    kept = waiting[n]
-    brightest = 0.0
-    for c in range(spectral.shape[1]):
-        weight = gain * ray[WEIGHT + c]
+        if starts:
+            draw_lattice(batch[KEY], n, alphas[k], derive_key(key, SHIFTS), _ENTRY, scratch)
+            derive_keys(batch[KEY], n, derive_key(key, PATHS))
+        else:
+            draw(batch, n, alphas[k], scratch)
+        inner = False
         if kind == LAMBERT:
-            weight *= spectral[RHO, c]
-        elif kind in (ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR):
-            weight *= fresnel_conductor(cosine, spectral[ETA, c], spectral[KAPPA, c])
-        kept[WEIGHT + c] = weight
-        brightest = max(brightest, weight)
-    survival = min(1.0, brightest / FAINT)
-    if u >= survival:
-        return n
-    for c in range(spectral.shape[1]):
-        kept[WEIGHT + c] /= survival
-    down = (ray[DOWNWARDS] > 0.0) == through
-    kept[X] = x
-    kept[Y] = y
-    kept[Z] = z
-    kept[RATIO] = ray[RATIO]
-    kept[INTERFACE] = ray[INTERFACE] + (1.0 if down else -1.0)
-    kept[DOWNWARDS] = 1.0 if down else -1.0
-    kept[ORDER] = ray[ORDER]
-    return n + 1
+            for c in range(channels):
+                scale(batch[WEIGHT + c], n, spectral[k, RHO, c])
+            cosines, sines, heights = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z]
+            forget(n, cosines, sines, heights, scratch[NEXT_X], scratch[NEXT_Y], scratch[NEXT_Z], scratch[GAIN])
+        else:
+            meet_facets(batch, n, alphas[k], scratch)
+            if kind in (ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR):
+                for c in range(channels):
+                    colour(batch[WEIGHT + c], n, scratch[COSINE], spectral[k, ETA, c], spectral[k, KAPPA, c])
+                _fill(scratch[REFLECTANCE], n, 1.0)
+            else:
+                # What an outermost interface lets through is not followed.
+                inner = 0 < k < last
+                share_out(scratch[COSINE], n, eta, scratch[REFLECTANCE], scratch[COSINE_BEYOND])
+                if inner and crowded:
+                    toss(batch[KEY], n, scratch[REFLECTANCE])
+            turn_back(batch, n, alphas[k], scratch)
+        find_brightest(batch, n, channels, scratch[BRIGHTEST])
+        for through in range(2 if inner else 1):
+            if through == 1:
+                go_through(batch, n, alphas[k], eta, scratch)
+            up = (through == 1) == (side == BELOW)
+            q = 2 * (k - 1) + BELOW if up else 2 * (k + 1) + ABOVE
+            play(batch[KEY], n, through, scratch[BRIGHTEST], scratch[GAIN], scratch[NEXT_KEY])
+            first = Z if kinds[q // 2] == LAMBERT else X
+            filled[q] += push(batch, n, channels, scratch, steps, lists, queues[q], filled[q], first)
+    return False
+
+
+@stage
+def _lift(z, n):
+    for i in range(n):
+        z[i] = max(z[i], LEAST_COSINE)
+
+
+@stage
+def _fill(row, n, value):
+    for i in range(n):
+        row[i] = value
+
+
+@stage
+def _count_order(slot, n, slots):
+    for i in range(n):
+        number = int(slot[i]) + 1
+        slot[i] = number if number % slots > 0 else number - 1

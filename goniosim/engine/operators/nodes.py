@@ -1,8 +1,8 @@
 """Nodes in polar angle and folded azimuth, with cubic Lagrange weights for what lies between them.
 
 Node (j, i) stands at the azimuth j h and the polar angle i h: ``bins[j, i, channel]``. Stencils have 4 x 4 nodes,
-one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2 they use every second
-node.
+one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2, values are
+looked up at every second node.
 """
 
 import math
@@ -38,21 +38,43 @@ def mirrored(j, last):
 
 
 @stage
-def deposit(x, y, z, weights, ratio, stride, bins):
-    """Spread ``weights[channel] * ratio`` over the nodes around a direction."""
-    nodes = bins.shape[1] - 1
-    u, v = place(x, y, z, nodes, stride)
-    i, a0, a1, a2, a3 = cubic(u, 0, nodes // stride - 3)
-    last = 2 * (nodes // stride)
-    j, b0, b1, b2, b3 = cubic(v, -1, last - 1)
-    for s in range(4):
-        b = ratio * (b0 if s == 0 else (b1 if s == 1 else (b2 if s == 2 else b3)))
-        row = bins[mirrored(j + s, last) * stride]
-        for r in range(4):
-            a = b * (a0 if r == 0 else (a1 if r == 1 else (a2 if r == 2 else a3)))
-            node = row[(i + r) * stride]
-            for c in range(weights.shape[0]):
-                node[c] += a * weights[c]
+def stencils(x, y, z, ratios, n, nodes, polar, around, first):
+    """Find the nodes that ``n`` directions are spread over.
+
+    Parameters
+    ----------
+    nodes : int
+        Distances of 90 degrees.
+    polar, around : ndarray, shape (4, n)
+        Overwritten: weights in polar angle; and in azimuth, times the ray's ratio.
+    first : ndarray of int64, shape (2, n)
+        Overwritten: the first node in polar angle, and in azimuth, which may lie beyond 0 or pi.
+    """
+    _place(x, y, z, n, nodes, polar[0], around[0])
+    _weigh_polar(n, nodes, first[0], polar[0], polar[1], polar[2], polar[3])
+    _weigh_around(ratios, n, nodes, first[1], around[0], around[1], around[2], around[3])
+
+
+@stage
+def _place(x, y, z, n, nodes, u, v):
+    for i in range(n):
+        u[i], v[i] = place(x[i], y[i], z[i], nodes, 1)
+
+
+@stage
+def _weigh_polar(n, nodes, first, a0, a1, a2, a3):
+    for i in range(n):
+        first[i], a0[i], a1[i], a2[i], a3[i] = cubic(a0[i], 0, nodes - 3)
+
+
+@stage
+def _weigh_around(ratios, n, nodes, first, b0, b1, b2, b3):
+    for i in range(n):
+        first[i], w0, w1, w2, w3 = cubic(b0[i], -1, 2 * nodes - 1)
+        b0[i] = w0 * ratios[i]
+        b1[i] = w1 * ratios[i]
+        b2[i] = w2 * ratios[i]
+        b3[i] = w3 * ratios[i]
 
 
 @stage
