@@ -4,18 +4,22 @@ Every arrival meets every cell, so that a few thousand light paths do the work o
 which `Operator.coarse_minus_fine` bounds.
 """
 
+import math
+
 import numpy as np
 
 from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals, waiting_rays
 from ..operators.choice import IN, choose, inner_index
-from ..operators.gather import POINTS, TAILS, gather
+from ..operators.exits import TAILS
+from ..operators.gather import POINTS, POINTS_OF_EXIT, gather
+from ..operators.stencils import padded
 
 # Light paths between two looks at `stop`: some tens of milliseconds.
 PATHS_PER_CALL = 1 << 13
-# An event here, and a point of a cell, take as long as so many events of the analog walk; one of those as long as
+# An event here, and a look at the radiance, take as long as so many events of the analog walk; one of those as long as
 # so many multiplications of a product of matrices.
-EVENT, POINT, MULTIPLICATIONS = 9, 9, 300
+EVENT, LOOK, MULTIPLICATIONS = 9, 2, 300
 _NUMBER = 8
 
 
@@ -62,8 +66,9 @@ class Operator:
         """Bytes shared by all threads, and bytes of one workspace."""
         shared, own = self.application.memory
         channels = self.slots * self.plan.n_distinct
-        # The bins of one replicate, and its values for the cells.
-        return shared, own + 2 * _NUMBER * (2 * self.nodes + 1) * (self.nodes + 1) * channels
+        # The bins of one replicate, and its radiance at the nodes.
+        at_node = channels + (0 if self.application.sums_cells else padded(channels))
+        return shared, own + _NUMBER * (2 * self.nodes + 1) * (self.nodes + 1) * at_node
 
     def workspace(self):
         """Arrays of one thread."""
@@ -98,6 +103,8 @@ class Workspace:
         self.operator = operator
         self.space = operator.application.workspace()
         self.bins = np.empty((operator.slots, 2 * operator.nodes + 1, operator.nodes + 1, plan.n_distinct))
+        shape = (*self.bins.shape[1:3], padded(operator.slots * plan.n_distinct))
+        self.radiance = np.zeros(0 if operator.application.sums_cells else math.prod(shape))
         self.waiting = waiting_rays(plan)
         self.stack = (plan.kinds, plan.alphas, plan.etas, plan.spectral, plan.taus, plan.absorbs)
         self.exits = self.source = np.empty(0)
@@ -175,11 +182,8 @@ class Workspace:
             slots, channels, rows, width = out.shape
             out.reshape(slots, len(values), -1, rows, width)[...] = values.transpose(3, 0, 4, 2, 1)
             return 0
-        radiance = np.ascontiguousarray(values.transpose(1, 2, 3, 0, 4))
-        radiance = radiance.reshape(*radiance.shape[:2], -1)
         gather(
-            radiance,
-            stride,
+            self._radiance(values[:, ::stride, ::stride]),
             plan.parametrization,
             plan.rows,
             plan.columns,
@@ -188,6 +192,16 @@ class Workspace:
             self.source,
             plan.taus[0],
             key,
-            out.reshape(radiance.shape[2], -1),
+            out.reshape(-1, plan.rows * plan.width),
         )
-        return POINT * (POINTS + (TAILS if len(self.exits) else 0)) * plan.rows * plan.width
+        looks = POINTS_OF_EXIT + TAILS if len(self.exits) else POINTS
+        return LOOK * looks * plan.rows * plan.width
+
+    def _radiance(self, values):
+        """Numbers of a replicate, side by side for each of the nodes that are used."""
+        groups, azimuths, polar, slots, channels = values.shape
+        count = groups * slots * channels
+        shape = (azimuths, polar, padded(count))
+        radiance = self.radiance[: math.prod(shape)].reshape(shape)
+        radiance[:, :, :count].reshape(azimuths, polar, slots, groups, channels)[...] = values.transpose(1, 2, 3, 0, 4)
+        return radiance
