@@ -101,6 +101,14 @@ def sincos_octants(t):
 
 
 @scalar
+def sincos_first_quadrant(x):
+    """Sine and cosine of an angle ``x`` in [0, pi/2]."""
+    steep = x > _QUARTER_PI
+    s, c = sincos_octants((_HALF_PI - x if steep else x) / _HALF_PI)
+    return c if steep else s, s if steep else c
+
+
+@scalar
 def exp_nonpositive(x):
     """Exponential of x <= 0, minus infinity included; zero below -700."""
     y = max(x, -700.0)

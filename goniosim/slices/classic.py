@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .._jit import scalar, stage
-from ..optics.elementary import arctan2_first_quadrant
+from ..optics.elementary import arctan2_first_quadrant, sincos_first_quadrant
 from .grid import HALF_PI, cell_number
 
 # Of d omega_v to the solid angle of the axis whose polar angle is `tilt`, besides what `view_direction` returns.
@@ -25,8 +25,8 @@ def cells_of(x, y, z, n, rows, columns, cell):
 @scalar
 def view_row(u):
     """Sine and cosine of theta_v on the row coordinate ``u``, and the part of the Jacobian that is theirs."""
-    sine = math.sin(u)
-    return sine, math.cos(u), sine
+    sine, cosine = sincos_first_quadrant(u)
+    return sine, cosine, sine
 
 
 @scalar

@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 from .._jit import scalar, stage
-from ..optics.elementary import arctan2_first_quadrant
+from ..optics.elementary import arctan2_first_quadrant, sincos_first_quadrant
 from .grid import HALF_PI, cell_number
 
 # Of d omega_v to the solid angle of the axis whose polar angle is `tilt`, besides what `view_direction` returns.
@@ -51,9 +51,8 @@ def cells_of(x, y, z, n, rows, columns, light, cell):
 @scalar
 def view_row(u):
     """Sine and cosine of theta_h on the row coordinate ``u``, and the part of the Jacobian that is theirs."""
-    theta = u * u / HALF_PI
-    sine = math.sin(theta)
-    return sine, math.cos(theta), 4.0 * sine * (2.0 * u / HALF_PI)
+    sine, cosine = sincos_first_quadrant(u * u / HALF_PI)
+    return sine, cosine, 4.0 * sine * (2.0 * u / HALF_PI)
 
 
 @scalar

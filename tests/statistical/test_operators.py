@@ -94,7 +94,7 @@ def test_fewer_replicates_than_a_chunk_and_odd_columns():
 
 
 def test_cells_by_points_and_by_nodes_agree():
-    """A grid that the nodes do not fit takes four points of each cell: the same light to 1 %, from the same paths."""
+    """A grid that the nodes do not fit takes some points of each cell: the same light to 1 %, from the same paths."""
     _, fits = operator_of("out", rows=9, columns=36)
     _, points = operator_of("out", rows=10, columns=35)
     assert fits.application.sums_cells and not points.application.sums_cells

@@ -16,6 +16,12 @@ def _sincos(u, sine, cosine):
 
 
 @kernel
+def _sincos_of_angles(x, sine, cosine):
+    for i in range(x.shape[0]):
+        sine[i], cosine[i] = elementary.sincos_first_quadrant(x[i])
+
+
+@kernel
 def _exp(x, y):
     for i in range(x.shape[0]):
         y[i] = elementary.exp_nonpositive(x[i])
@@ -41,6 +47,16 @@ def test_sincos_of_turns():
     # The first term left out of the cosine is (pi/4)^16 / 16! = 1.0e-15; rounding adds to it.
     assert np.abs(sine - exact_sine).max() < 1.5e-15
     assert np.abs(cosine - exact_cosine).max() < 1.5e-15
+
+
+def test_sincos_of_angles():
+    x = np.concatenate([np.linspace(0.0, math.pi / 2, 100_001), np.logspace(-20, -1, 50), [math.pi / 4]])
+    sine, cosine = np.empty_like(x), np.empty_like(x)
+    _sincos_of_angles(x, sine, cosine)
+    assert np.abs(sine - np.sin(x)).max() < 1.5e-15
+    assert np.abs(cosine - np.cos(x)).max() < 1.5e-15
+    small = (x > 0.0) & (x < 0.1)
+    assert np.abs(sine[small] / np.sin(x[small]) - 1.0).max() < 1e-15
 
 
 def test_azimuth_uses_all_directions_near_the_axes():

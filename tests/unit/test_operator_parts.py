@@ -8,7 +8,7 @@ import pytest
 from goniosim._jit import kernel
 from goniosim.engine.estimators.operator import Operator
 from goniosim.engine.layout import DOWN, UP
-from goniosim.engine.operators import cells, kernels, nodes, rays
+from goniosim.engine.operators import cells, kernels, nodes, rays, stencils
 from goniosim.engine.operators.arrivals import bin_arrivals
 from goniosim.engine.operators.azimuths import at_azimuths, cosines, end_weights, to_coefficients, to_values
 from goniosim.engine.operators.bins import deposit, move_bins
@@ -35,8 +35,19 @@ def _spread(directions, ratios, weights, bins):
 
 
 @kernel
+def _look_at(x, y, z, values, weights, places, found):
+    stencils.find_stencils(x, y, z, 1, values, weights, places)
+    stencils.interpolate(values, weights, places, 1, found)
+
+
 def _look(x, y, z, stride, values, found):
-    nodes.interpolate(x, y, z, stride, values, found)
+    some = values[::stride, ::stride]
+    table = np.full((*some.shape[:2], stencils.padded(len(found))), np.nan)
+    table[..., : len(found)] = some
+    lanes = np.empty((table.shape[2] // stencils.LANES, 1, stencils.LANES))
+    direction = (np.array([w]) for w in (x, y, z))
+    _look_at(*direction, table, np.empty((stencils.WEIGHTS, 1)), np.empty((4, 1), np.int64), lanes)
+    found[:] = lanes.reshape(-1)[: len(found)]
 
 
 def _directions():

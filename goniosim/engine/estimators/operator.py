@@ -12,14 +12,16 @@ from ..operators import rays
 from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals
 from ..operators.choice import IN, choose, inner_index
-from ..operators.gather import POINTS, TAILS, gather
+from ..operators.exits import TAILS
+from ..operators.gather import POINTS, POINTS_OF_EXIT, gather
+from ..operators.stencils import padded
 from ..unit import BATCH
 
 # Events of the walk between two looks at `stop`: some tens of milliseconds.
 BUDGET = 1 << 20
-# An event here, and a point of a cell, take as long as so many events of the analog walk; one of those as long as
+# An event here, and a look at the radiance, take as long as so many events of the analog walk; one of those as long as
 # so many multiplications of a product of matrices.
-EVENT, POINT, MULTIPLICATIONS = 2, 9, 300
+EVENT, LOOK, MULTIPLICATIONS = 2, 2, 300
 _NUMBER = 8
 
 
@@ -66,9 +68,9 @@ class Operator:
         """Bytes shared by all threads, and bytes of one workspace."""
         shared, own = self.application.memory
         walk = sum(math.prod(shape) for shape in rays.shapes(self.plan).values())
-        # Besides the walk, the values of one replicate for the cells.
-        values = (2 * self.nodes + 1) * (self.nodes + 1) * self.slots * self.plan.n_distinct
-        return shared, own + _NUMBER * (walk + values)
+        # Besides the walk, the radiance of one replicate at the nodes, where cells are not summed.
+        at_node = 0 if self.application.sums_cells else padded(self.slots * self.plan.n_distinct)
+        return shared, own + _NUMBER * (walk + (2 * self.nodes + 1) * (self.nodes + 1) * at_node)
 
     def workspace(self):
         """Arrays of one thread."""
@@ -103,6 +105,8 @@ class Workspace:
         self.operator = operator
         self.space = operator.application.workspace()
         self.walk = rays.workspace(plan)
+        shape = (2 * operator.nodes + 1, operator.nodes + 1, padded(operator.slots * plan.n_distinct))
+        self.radiance = np.zeros(0 if operator.application.sums_cells else math.prod(shape))
         self.stack = (plan.kinds, plan.alphas, plan.etas, plan.spectral, plan.taus, plan.absorbs)
         self.exits = self.source = np.empty(0)
         if variant.leaves == IN:
@@ -173,11 +177,8 @@ class Workspace:
             slots, channels, rows, width = out.shape
             out.reshape(slots, len(values), -1, rows, width)[...] = values.transpose(3, 0, 4, 2, 1)
             return 0
-        radiance = np.ascontiguousarray(values.transpose(1, 2, 3, 0, 4))
-        radiance = radiance.reshape(*radiance.shape[:2], -1)
         gather(
-            radiance,
-            stride,
+            self._radiance(values[:, ::stride, ::stride]),
             plan.parametrization,
             plan.rows,
             plan.columns,
@@ -186,6 +187,16 @@ class Workspace:
             self.source,
             plan.taus[0],
             key,
-            out.reshape(radiance.shape[2], -1),
+            out.reshape(-1, plan.rows * plan.width),
         )
-        return POINT * (POINTS + (TAILS if len(self.exits) else 0)) * plan.rows * plan.width
+        looks = POINTS_OF_EXIT + TAILS if len(self.exits) else POINTS
+        return LOOK * looks * plan.rows * plan.width
+
+    def _radiance(self, values):
+        """Numbers of a replicate, side by side for each of the nodes that are used."""
+        groups, azimuths, polar, slots, channels = values.shape
+        count = groups * slots * channels
+        shape = (azimuths, polar, padded(count))
+        radiance = self.radiance[: math.prod(shape)].reshape(shape)
+        radiance[:, :, :count].reshape(azimuths, polar, slots, groups, channels)[...] = values.transpose(1, 2, 3, 0, 4)
+        return radiance

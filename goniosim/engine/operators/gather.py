@@ -1,45 +1,41 @@
-"""Cells from a smooth radiance at the nodes: four points of each cell, if need be through a narrow exit.
+"""Cells from a smooth radiance at the nodes: some points of each cell, if need be through a narrow exit.
 
-The points are a random one and its turns about the cell's centre by quarters: what is linear in the cell cancels.
-Through an exit, each point is followed backwards by facets as seen from outside. Their rare tail is drawn apart, as a
-difference to the core at the same point: the weights of tail and core are constants, and do not add to the scatter.
+In lockstep over some neighbouring cells of a row, in short loops that become vector code.
 """
-
-import math
 
 import numpy as np
 
 from ..._jit import kernel, stage
-from ...optics.elementary import sincos_turns
-from ...optics.fresnel import dielectric_transmittance, fresnel_dielectric
-from ...optics.ggx import sample_visible_normal, smith_g1
+from ...optics.fresnel import dielectric_transmittance
 from ...optics.medium import path_length, transmittance
 from ...optics.microfacet import microfacet_transmission
 from ...optics.random import derive_key, uniform
-from ...slices import view_direction, view_row
-from ...slices.grid import HALF_PI
-from ..lattice import coordinate
-from .nodes import interpolate
+from .exits import TAILS, core_heights, follow, tail_heights
+from .points import columns_above, find_points
+from .stencils import LANES, WEIGHTS, find_stencils, interpolate
 
-# Points of a cell, and facets of the tail, which follow from every second of them.
-POINTS, TAILS = 4, 2
-# Which child of a replicate's key draws the points.
+# Points of a cell without an exit, and with one: the lobes of its facets are sampled along with the cell.
+POINTS, POINTS_OF_EXIT = 2, 4
+# Which child of a replicate's key draws points and facets.
 CELLS = 2
-# Share of the facets that is the tail, and how its points are drawn: 1 - u = TAIL t^3, of weight 3 t^2.
-TAIL = 0.02
-_LEAST_TAIL = 1e-12
-_LEAST_COSINE = 1e-9
+# Cells at a time: their arrays stay in the nearest cache.
+BLOCK = 128
+
+# Rows of the scratch array. First what is drawn: a point, a facet, and one of the tail.
+U, V, AZIMUTH, HEIGHT, TAIL_AZIMUTH, TAIL_DRAW = range(6)
+_DRAWS_OF_POINTS, _DRAWS = 2, 6
+# The point, cos(theta_v) d omega_v there; the direction inside; the tail's facet, its share; what a look is worth.
+X, Y, Z, MEASURE, INSIDE_X, INSIDE_Y, INSIDE_Z, TAIL_HEIGHT, TAIL_SHARE, GAIN, N_SCRATCH = range(6, 17)
 
 
 @kernel
-def gather(values, stride, parametrization, rows, columns, light, exits, source, taus, key, out):
+def gather(values, parametrization, rows, columns, light, exits, source, taus, key, out):
     """Energy that leaves into the cells of a folded slice.
 
     Parameters
     ----------
-    values : ndarray, shape (azimuths, polar angles, n)
+    values : ndarray, shape (azimuths, polar angles, stencils.padded(n))
         Radiance at the nodes: outside, or below an exit.
-    stride : int
     parametrization, rows, columns : int
     light : ndarray, shape (3,)
     exits : ndarray, shape (0,) or (2,)
@@ -51,89 +47,119 @@ def gather(values, stride, parametrization, rows, columns, light, exits, source,
     key : uint64
         Of the replicate.
     out : ndarray, shape (n, rows * width)
+        Overwritten.
     """
-    found = np.empty(out.shape[0])
-    core = np.empty((POINTS, out.shape[0]))
-    x = np.empty(POINTS)
-    y = np.empty(POINTS)
-    z = np.empty(POINTS)
-    measure = np.empty(POINTS)
+    space = np.empty((N_SCRATCH, BLOCK))
+    weights = np.empty((WEIGHTS, BLOCK))
+    nodes = np.empty((4, BLOCK), np.int64)
+    found = np.empty((values.shape[2] // LANES, BLOCK, LANES))
+    shares = np.empty((taus.shape[0], BLOCK))
     width = out.shape[1] // rows
     cells_key = derive_key(key, CELLS)
+    leaves = exits.shape[0] > 0
     # A smooth exit has one facet.
-    rough = exits.shape[0] > 0 and exits[0] > 0.0
-    for cell in range(out.shape[1]):
-        for e in range(out.shape[0]):
-            out[e, cell] = 0.0
-        cell_key = derive_key(cells_key, cell)
-        u1 = uniform(cell_key, 0)
-        u2 = uniform(cell_key, 1)
-        if not _points(parametrization, cell // width, cell % width, rows, columns, light, u1, u2, x, y, z, measure):
-            continue
-        facets = POINTS + (TAILS if rough else 0)
-        for j in range(facets):
-            tail = j >= POINTS
-            i = 2 * (j - POINTS) if tail else j
-            t = coordinate(uniform(cell_key, 5), j, 1.0 / TAILS)
-            height = 1.0 - max(TAIL * t * t * t, _LEAST_TAIL) if tail else (1.0 - TAIL) * uniform(cell_key, 3)
-            azimuth = uniform(cell_key, 4 if tail else 2)
-            azimuth = coordinate(azimuth, i, 1.0 / POINTS)
-            _radiance(x[i], y[i], z[i], azimuth, height, exits, source, light, taus, stride, values, found)
-            share = measure[i] * (3.0 * t * t * TAIL / TAILS if tail else 1.0 / POINTS)
-            for e in range(found.shape[0]):
-                out[e, cell] += share * (found[e] - core[i, e] if tail else found[e])
-                core[i, e] = core[i, e] if tail else found[e]
+    rough = leaves and exits[0] > 0.0
+    points = POINTS_OF_EXIT if leaves else POINTS
+    out[...] = 0.0
+    for row in range(rows):
+        count = columns_above(parametrization, row, rows, columns, width, light)
+        for first in range(0, count, BLOCK):
+            n = min(BLOCK, count - first)
+            cell = row * width + first
+            _draw(cells_key, cell, n, _DRAWS if leaves else _DRAWS_OF_POINTS, space)
+            for i in range(points):
+                find_points(
+                    i * (4 // points), parametrization, row, first, n, rows, columns, light,
+                    space[U], space[V], space[X], space[Y], space[Z], space[MEASURE],
+                )  # fmt: skip
+                tailed = rough and i % (POINTS_OF_EXIT // TAILS) == 0
+                if tailed:
+                    number = i // (POINTS_OF_EXIT // TAILS)
+                    tail_heights(space[TAIL_DRAW], number, n, space[TAIL_HEIGHT], space[TAIL_SHARE])
+                for tail in range(2 if tailed else 1):
+                    _weigh(n, points, tailed, tail > 0, space[MEASURE], space[TAIL_SHARE], space[GAIN])
+                    x, y, z = space[X], space[Y], space[Z]
+                    if leaves:
+                        _leave(n, i / points, tail > 0, exits, space)
+                        x, y, z = space[INSIDE_X], space[INSIDE_Y], space[INSIDE_Z]
+                    find_stencils(x, y, z, n, values, weights, nodes)
+                    interpolate(values, weights, nodes, n, found)
+                    if source.shape[0] > 0:
+                        _see_light(x, y, z, n, light, source, taus.shape[0], weights[0], found)
+                    _absorb(z, n, taus, leaves, space[GAIN], shares)
+                    _add(found, n, shares, cell, out)
 
 
 @stage
-def _points(parametrization, row, column, rows, columns, light, u1, u2, x, y, z, measure):
-    """Points of a cell and cos(theta_v) d omega_v at each, times the cell; whether any is above the horizon."""
-    height = HALF_PI / rows
-    breadth = 2.0 * math.pi / columns
-    above = False
-    for i in range(POINTS):
-        p = u1 if i % 2 == 0 else u2
-        q = u2 if i % 2 == 0 else 1.0 - u1
-        p = 1.0 - p if i >= 2 else p
-        q = 1.0 - q if i >= 2 else q
-        sine, cosine, jacobian = view_row(parametrization, (row + p) * height)
-        sin_phi, cos_phi = sincos_turns((column + q) / columns)
-        x[i], y[i], z[i], rest = view_direction(
-            parametrization, sine, cosine, cos_phi, sin_phi, light[0], light[1], light[2]
-        )
-        inside = z[i] > 0.0 and rest > 0.0
-        measure[i] = z[i] * jacobian * rest * height * breadth if inside else 0.0
-        z[i] = z[i] if inside else 1.0
-        x[i] = x[i] if inside else 0.0
-        y[i] = y[i] if inside else 0.0
-        above = above or inside
-    return above
+def _draw(key, cell, n, dimensions, space):
+    for dimension in range(dimensions):
+        dimension_key = derive_key(key, dimension)
+        row = space[dimension]
+        for i in range(n):
+            row[i] = uniform(dimension_key, cell + i)
+    if dimensions == _DRAWS:
+        core_heights(n, space[HEIGHT])
 
 
 @stage
-def _radiance(x, y, z, azimuth, height, exits, source, light, taus, stride, values, found):
-    """Radiance in the direction (x, y, z) outside, through one facet if there is an exit."""
-    gain = 1.0
-    if exits.shape[0] > 0:
-        alpha = exits[0]
-        eta = exits[1]
-        sine, cosine = sincos_turns(azimuth)
-        mx, my, mz = sample_visible_normal(x, y, z, alpha, cosine, sine, height)
-        facet = min(1.0, max(0.0, x * mx + y * my + z * mz))
-        reflectance, cos_t = fresnel_dielectric(facet, eta)
-        along = facet / eta - cos_t
-        x = x / eta - along * mx
-        y = y / eta - along * my
-        z = z / eta - along * mz
-        gain = (1.0 - reflectance) * smith_g1(z, alpha) / (eta * eta)
-        z = max(z, _LEAST_COSINE)
-    interpolate(x, y, z, stride, values, found)
-    if source.shape[0] > 0:
-        value, facet = microfacet_transmission(x, y, z, light[0], light[1], light[2], source[0], source[1])
-        value *= source[1] * source[1] * dielectric_transmittance(facet, source[1])
-        for c in range(taus.shape[0]):
-            found[c] += value
-    if exits.shape[0] > 0:
-        path = path_length(z)
-        for e in range(found.shape[0]):
-            found[e] *= gain * transmittance(taus[e % taus.shape[0]], path)
+def _weigh(n, points, tailed, tail, measure, shares, gain):
+    """What a look is worth. That of the tail is taken from the core at the same point."""
+    core = 0.0 if tail else 1.0 / points
+    sign = 1.0 if tail else -1.0
+    if tailed:
+        for i in range(n):
+            gain[i] = measure[i] * (core + sign * shares[i])
+    else:
+        for i in range(n):
+            gain[i] = measure[i] * core
+
+
+@stage
+def _leave(n, turn, tail, exits, space):
+    azimuths = space[TAIL_AZIMUTH if tail else AZIMUTH]
+    heights = space[TAIL_HEIGHT if tail else HEIGHT]
+    follow(
+        space[X], space[Y], space[Z], azimuths, turn, heights, n, exits[0], exits[1],
+        space[INSIDE_X], space[INSIDE_Y], space[INSIDE_Z], space[GAIN],
+    )  # fmt: skip
+
+
+@stage
+def _see_light(x, y, z, n, light, source, channels, seen, found):
+    """Add the radiance of the light itself, as seen through the top interface, to the first numbers."""
+    alpha = source[0]
+    eta = source[1]
+    lx = light[0]
+    ly = light[1]
+    lz = light[2]
+    for i in range(n):
+        value, cosine = microfacet_transmission(x[i], y[i], z[i], lx, ly, lz, alpha, eta)
+        seen[i] = value * eta * eta * dielectric_transmittance(cosine, eta)
+    for c in range(channels):
+        lanes = found[c // LANES]
+        for i in range(n):
+            lanes[i, c % LANES] += seen[i]
+
+
+@stage
+def _absorb(z, n, taus, leaves, gain, shares):
+    """What looks are worth after the way to the exit."""
+    for c in range(taus.shape[0]):
+        share = shares[c]
+        tau = taus[c]
+        if leaves and tau > 0.0:
+            for i in range(n):
+                share[i] = gain[i] * transmittance(tau, path_length(z[i]))
+        else:
+            for i in range(n):
+                share[i] = gain[i]
+
+
+@stage
+def _add(found, n, shares, cell, out):
+    for e in range(out.shape[0]):
+        lanes = found[e // LANES]
+        share = shares[e % shares.shape[0]]
+        cells = out[e][cell : cell + n]
+        for i in range(n):
+            cells[i] += share[i] * lanes[i, e % LANES]

@@ -75,24 +75,3 @@ def _weigh_around(ratios, n, nodes, first, b0, b1, b2, b3):
         b1[i] = w1 * ratios[i]
         b2[i] = w2 * ratios[i]
         b3[i] = w3 * ratios[i]
-
-
-@stage
-def interpolate(x, y, z, stride, values, found):
-    """Write ``values[azimuth, theta, channel]`` at a direction into ``found[channel]``."""
-    nodes = values.shape[1] - 1
-    u, v = place(x, y, z, nodes, stride)
-    i, a0, a1, a2, a3 = cubic(u, 0, nodes // stride - 3)
-    last = 2 * (nodes // stride)
-    j, b0, b1, b2, b3 = cubic(v, -1, last - 1)
-    for c in range(found.shape[0]):
-        found[c] = 0.0
-    for s in range(4):
-        b = b0 if s == 0 else (b1 if s == 1 else (b2 if s == 2 else b3))
-        row = values[mirrored(j + s, last) * stride]
-        n0 = row[i * stride]
-        n1 = row[(i + 1) * stride]
-        n2 = row[(i + 2) * stride]
-        n3 = row[(i + 3) * stride]
-        for c in range(found.shape[0]):
-            found[c] += b * (a0 * n0[c] + a1 * n1[c] + a2 * n2[c] + a3 * n3[c])
