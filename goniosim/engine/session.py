@@ -68,17 +68,13 @@ class Session:
         if asked.target is not None and asked.estimator == AUTO and self.choices[0].sides:
             self._reconsider()
         self.runs = [choice.start(self.plan, asked.seed) for choice in self.choices]
-        directions = range(len(self.plan.theta_deg))
+        for run in self.runs:
+            self._begin(run)
         if asked.target is None:
-            self.drive.expect(len(directions) * len(self.runs) * asked.rays)
+            self.drive.expect(len(self.plan.theta_deg) * len(self.runs) * asked.rays)
             self._shoot(asked.rays)
         else:
-            met, left = partial(self._meets, asked.target), []
-            for run in self.runs:
-                self._begin(run)
-                self._from = self.drive.now() - self._spent[run]
-                left += self.drive.reach(run, directions, met, limit, self._note)
-            self.reached = not left
+            self.reached = self.drive.reach(self.runs, partial(self._meets, asked.target), limit, self._do)
         self.audit = next((run for run in self.runs if run.audits), None) or self._audited()
 
     def _begin(self, run):
@@ -88,15 +84,16 @@ class Session:
 
     def _shoot(self, rays):
         """Do all runs, round by round, so that an interruption leaves something of every component."""
-        for run in self.runs:
-            self._begin(run)
         for rounds in itertools.zip_longest(*(run.rounds(rays) for run in self.runs), fillvalue=()):
             for run, works in zip(self.runs, rounds, strict=True):
-                began = self.drive.now()
-                self._from = began - self._spent[run]
                 if works:
-                    self.drive.do(run, works, self._note)
-                self._spent[run] += self.drive.now() - began
+                    self._do(run, works)
+
+    def _do(self, run, works):
+        began = self.drive.now()
+        self._from = began - self._spent[run]
+        self.drive.do(run, works, self._note)
+        self._spent[run] += self.drive.now() - began
 
     def _audited(self):
         """Where all energy goes, by an analog run that has no slices; short, if somebody waits for an end."""

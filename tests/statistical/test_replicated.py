@@ -5,6 +5,7 @@ import threading
 import numpy as np
 import pytest
 
+from goniosim import simulate
 from goniosim.effective import effective_count
 from goniosim.engine import assembly
 from goniosim.engine.analog import AnalogRun
@@ -12,6 +13,7 @@ from goniosim.engine.drive import Drive
 from goniosim.engine.layout import DOWN, UP
 from goniosim.engine.plan import make_plan
 from goniosim.engine.replicated import ReplicatedRun
+from goniosim.engine.rounds import FEWEST_PATHS
 from plain import Plain
 from reference.scenes import dielectric, make_scene, medium
 
@@ -136,3 +138,13 @@ def test_a_stop_keeps_whole_replicates():
     size = 50_016 // 32
     assert not run.finished and 8 * size <= run.rays[0] < 50_000 and run.rays[0] % size == 0
     assert len(run.spending.checkpoints[0]) == 1 and run.estimate(DOWN, 0).energy.sum() > 0.3
+
+
+def test_both_components_of_a_slab_grow_until_the_limit():
+    layers = [dielectric(1.5, 0.2), dielectric(1.0, 0.2)]
+    scene = make_scene(layers, 30.0, rows=9, columns=36)
+    found = simulate(scene, target=1e-6, max_rays=4e5)
+    assert found.target_reached is False and found.rays.tolist() == [3 * FEWEST_PATHS]
+    for name in ("reflection/internal", "transmission"):
+        assert found.components[name].estimator == ["operator"]
+        assert (np.diff(found.cost.error[name]) < 0.0).all()
