@@ -10,6 +10,8 @@ from goniosim.effective import effective_count
 from goniosim.engine import assembly
 from goniosim.engine.analog import AnalogRun
 from goniosim.engine.drive import Drive
+from goniosim.engine.estimate import noise
+from goniosim.engine.gain import gains, noise_of_a_path
 from goniosim.engine.layout import DOWN, UP
 from goniosim.engine.plan import make_plan
 from goniosim.engine.replicated import ReplicatedRun
@@ -138,6 +140,20 @@ def test_a_stop_keeps_whole_replicates():
     size = 50_016 // 32
     assert not run.finished and 8 * size <= run.rays[0] < 50_000 and run.rays[0] % size == 0
     assert len(run.spending.checkpoints[0]) == 1 and run.estimate(DOWN, 0).energy.sum() > 0.3
+
+
+def test_a_few_paths_without_slices_tell_the_noise_of_independent_paths(pair):
+    plan, analog, run = pair
+    short = shot(AnalogRun(plan.in_one_cell(), 3), rays=50_000)
+    for side in (UP, DOWN):
+        for m in range(2):
+            energy = run.estimate(side, m).energy
+            told = noise_of_a_path(plan, m, energy, short.estimate(side, m)) / np.sqrt(analog.rays[m])
+            assert told == pytest.approx(noise(plan, m, analog.estimate(side, m).stderr), rel=0.1)
+    # Replicates of independent paths gain a factor of two where they are folded; a busy machine blurs it.
+    found = gains(plan, [run], short)
+    assert set(found) == {"reflection/internal", "transmission"} and all(0.1 < gain < 10.0 for gain in found.values())
+    assert gains(plan, [analog], short) == {}
 
 
 def test_both_components_of_a_slab_grow_until_the_limit():
