@@ -84,3 +84,14 @@ def worst_error(plan, run, direction, of):
         total = one.energy.sum(axis=(1, 2)), one.total_stderr
         found.append(bound(of, one.energy, one.stderr, total, size, weights, one.noise, one.bias))
     return max(found)
+
+
+def floor(plan, run, direction):
+    """What nodes may be off by in one direction, relative to the slice: the largest of a run's components, or 0."""
+    found = [0.0]
+    for side in run.sides:
+        one = run.estimate(side, direction)
+        whole = noise(plan, direction, one.energy)
+        if one.bias and whole > 0.0:
+            found.append(one.bias / whole)
+    return max(found)

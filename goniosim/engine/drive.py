@@ -3,6 +3,7 @@
 import math
 import threading
 import time
+from collections import deque
 
 from .ordered import in_order
 
@@ -86,7 +87,7 @@ class Drive:
         for direction in sorted({one.direction for one in works} - noted):
             _finish(run, direction, note)
 
-    def reach(self, runs, reached, limit, do):
+    def reach(self, runs, judge, instead, limit, do):
         """Do rounds of all runs in turn, in each direction until it is as accurate as asked for.
 
         What is easy is left behind, so that the time goes to what is hard, be it a component or a direction.
@@ -94,8 +95,10 @@ class Drive:
         Parameters
         ----------
         runs : list of AnalogRun or ReplicatedRun
-        reached : callable
-            ``reached(run, direction)``.
+        judge : callable
+            ``judge(run, direction)``: whether it is as accurate as asked for, None if it will never be.
+        instead : callable
+            ``instead(run)`` after the first round of a run: another one that takes its place, or None.
         limit : Limit
             Of all runs together.
         do : callable
@@ -106,23 +109,27 @@ class Drive:
         bool
             Whether all directions of all runs were reached.
         """
-        left = {run: list(range(len(run.rays))) for run in runs}
-        going, number = list(runs), 0
-        while going:
-            for run in list(going):
-                if self.stopped:
-                    return False
-                if not limit.allows(run, left[run], number):
-                    going.remove(run)
+        turn, number, missed = [(run, list(range(len(run.rays)))) for run in runs], 0, False
+        while turn:
+            waiting, turn = deque(turn), []
+            while waiting:
+                run, directions = waiting.popleft()
+                if self.stopped or not limit.allows(run, directions, number):
+                    missed = True
                     continue
-                started, paths = self.now(), len(left[run]) * run.rays_of_round(number)
-                do(run, run.round(number, left[run]))
-                limit.took(run, self.now() - started, paths)
-                left[run] = [m for m in left[run] if not reached(run, m)]
-                if not left[run]:
-                    going.remove(run)
+                started = self.now()
+                do(run, run.round(number, directions))
+                other = instead(run) if number == 0 else None
+                if other is not None:
+                    waiting.append((other, directions))
+                    continue
+                limit.took(run, self.now() - started, len(directions) * run.rays_of_round(number))
+                verdicts = {m: judge(run, m) for m in directions}
+                missed |= None in verdicts.values()
+                if False in verdicts.values():
+                    turn.append((run, [m for m in directions if verdicts[m] is False]))
             number += 1
-        return not any(left.values())
+        return not missed
 
 
 def _finish(run, direction, note):

@@ -3,7 +3,6 @@
 import itertools
 import threading
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 
@@ -11,10 +10,16 @@ from . import assembly
 from .analog import AnalogRun
 from .drive import Drive, Limit
 from .estimators import pilot
-from .estimators.choose import ANALOG, AUTO, Choice, choose
+from .estimators.choose import ANALOG, AUTO, Choice, choose, next_best
 from .gain import gains, in_words
 from .plan import Plan
 from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
+from .unit import child_key
+
+# Child of the seed's key, for a run that takes the place of another.
+BRANCH = 5
+# What nodes may be off by is no more than that share of a target, or the noise would have to be less than half of it.
+MOST_OF_TARGET = 0.9
 
 
 @dataclass
@@ -77,7 +82,7 @@ class Session:
             self.drive.expect(len(self.plan.theta_deg) * len(self.runs) * asked.rays)
             self._shoot(asked.rays)
         else:
-            self.reached = self.drive.reach(self.runs, partial(self._meets, asked.target), limit, self._do)
+            self.reached = self.drive.reach(self.runs, self._judge, self._instead, limit, self._do)
         self.audit = next((run for run in self.runs if run.audits), None) or self._audited()
 
     def _begin(self, run):
@@ -118,5 +123,25 @@ class Session:
         seconds = self.drive.now() - self._from
         run.spending.note(direction, run.rays[direction], seconds, assembly.errors(self.plan, run, direction))
 
-    def _meets(self, target, run, direction):
-        return assembly.worst_error(self.plan, run, direction, target.of) <= target.relative_error
+    def _judge(self, run, direction):
+        """Whether a direction is as accurate as asked for; None if its nodes will not let it be."""
+        target = self.simulation.target
+        if assembly.worst_error(self.plan, run, direction, target.of) <= target.relative_error:
+            return True
+        return None if assembly.floor(self.plan, run, direction) >= target.relative_error else False
+
+    def _instead(self, run):
+        """The next best run for what one cannot reach, because of its nodes; it has a key of its own."""
+        target, number = self.simulation.target, self.runs.index(run)
+        floor = max(assembly.floor(self.plan, run, m) for m in range(len(self.plan.theta_deg)))
+        if self.simulation.estimator != AUTO or self.drive.stopped or floor < MOST_OF_TARGET * target.relative_error:
+            return None
+        reason = f"{run.name}: its nodes may be off by {100.0 * floor:.2g} %, which leaves no room in the target"
+        self.choices[number] = next_best(self.plan, run.sides, run.name, reason)
+        other = self.choices[number].start(self.plan, child_key(self.simulation.seed, BRANCH))
+        self.runs[number] = other
+        self._begin(other)
+        # What it took to find out counts.
+        self._spent[other] += self._spent.pop(run)
+        other.spending.take_over(run.spending)
+        return other

@@ -59,6 +59,9 @@ def test_an_error_ends_all():
     assert stop.is_set()
 
 
+NEVER = 0
+
+
 class Counted:
     """A run in which a direction is accurate after so many rounds; a ray of it takes so many seconds."""
 
@@ -96,7 +99,7 @@ def clock(monkeypatch):
     return made
 
 
-def reach(runs, limit, stop=None, clock=None):
+def reach(runs, limit, stop=None, clock=None, instead=lambda run: None, given=None):
     """Whether all was reached; the order of the rounds, by number of the run and of the round."""
     clock = clock or Clock()
     drive = Drive(1, stop or threading.Event(), lambda done, total: None)
@@ -108,7 +111,10 @@ def reach(runs, limit, stop=None, clock=None):
             run.rounds[m] += 1
             clock.seconds += run.seconds * run.rays_of_round(number)
 
-    return drive.reach(runs, lambda run, m: run.rounds[m] >= run.needed[m], limit, do), order
+    def judge(run, m):
+        return None if run.needed[m] == NEVER else run.rounds[m] >= run.needed[m]
+
+    return drive.reach(given or runs, judge, instead, limit, do), order
 
 
 def test_easy_directions_stop_early():
@@ -121,6 +127,17 @@ def test_runs_take_turns_and_easy_ones_stop_early():
     easy, hard = Counted(1, 1), Counted(1, 4)
     assert reach([easy, hard], Limit(None, None)) == (True, [(0, 0), (1, 0), (1, 1), (1, 2), (1, 3)])
     assert hard.asked == [(0, 1), (1,), (1,), (1,)]
+
+
+def test_what_can_never_be_reached_ends_by_itself():
+    assert reach([Counted(NEVER, 3), Counted(1)], Limit(None, None)) == (False, [(0, 0), (1, 0), (0, 1), (0, 2)])
+
+
+def test_another_run_takes_the_place_of_one_after_its_first_round():
+    runs = [Counted(NEVER), Counted(2), Counted(2)]
+    instead = {runs[0]: runs[2]}.get
+    order = [(0, 0), (1, 0), (2, 0), (1, 1), (2, 1)]
+    assert reach(runs, Limit(None, None), instead=instead, given=runs[:2]) == (True, order)
 
 
 def test_limits_end_what_is_not_reached():
