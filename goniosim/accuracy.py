@@ -85,9 +85,12 @@ def _margin(of, stderr, size, noise):
         squares = (each**2).sum(axis=(1, 2)) + noise.of_squares(size)
         # A sum of so many independent squares scatters like the squared norm of the error.
         np.divide(each.sum(axis=(1, 2)) ** 2, squares, out=freedom, where=squares > 0.0)
-    # Wilson and Hilferty (1931): the cube root of a mean of squares is nearly normal.
-    part = 2.0 / (9.0 * np.maximum(freedom, 1.0))
-    return (1.0 - part + NINE_OF_TEN * np.sqrt(part)) ** 1.5
+    freedom = np.maximum(freedom, 1.0)
+    # Paulson (1942): cube roots of means of squares are nearly normal. The standard error is known by scatter only.
+    a, b = 2.0 / (9.0 * freedom), 2.0 / (9.0 * freedom * (np.inf if noise is None else noise.freedom))
+    z2 = NINE_OF_TEN**2
+    spread = np.sqrt(z2 * (a * (1.0 - b) ** 2 + b * (1.0 - a) ** 2 - z2 * a * b))
+    return (((1.0 - a) * (1.0 - b) + spread) / ((1.0 - b) ** 2 - z2 * b)) ** 1.5
 
 
 def norm(energy, projected_solid_angle):

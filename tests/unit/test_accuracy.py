@@ -68,7 +68,8 @@ def test_cells_that_share_their_noise_count_as_one():
     stderr = energy * shared.std(ddof=1) / np.sqrt(32) / shared.mean()
     noise = Batches(energy, stderr, np.broadcast_to(shared[:, None, None, None] / 100.0, (32, 1, 10, 10)))
     given = "slice", energy, stderr, (np.ones(1), np.zeros(1)), np.ones((10, 10)), np.ones(1)
-    assert bound(*given, noise) == pytest.approx(1.645 * relative_error(*given), rel=0.05)
+    # The 95 % quantile of Student's t with 31 degrees of freedom.
+    assert bound(*given, noise) == pytest.approx(1.696 * relative_error(*given), rel=0.02)
     assert bound(*given, None) == pytest.approx(1.645 * relative_error(*given), rel=0.02)
 
 
