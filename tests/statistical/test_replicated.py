@@ -159,7 +159,8 @@ def test_a_few_paths_without_slices_tell_the_noise_of_independent_paths(pair):
 def test_both_components_of_a_slab_grow_until_the_limit():
     layers = [dielectric(1.5, 0.2), dielectric(1.0, 0.2)]
     scene = make_scene(layers, 30.0, rows=9, columns=36)
-    found = simulate(scene, target=1e-6, max_rays=4e5)
+    # What its nodes may be off by leaves room for it.
+    found = simulate(scene, target=3.5e-4, max_rays=4e5)
     assert found.target_reached is False and found.rays.tolist() == [3 * FEWEST_PATHS]
     for name in ("reflection/internal", "transmission"):
         assert found.components[name].estimator == ["operator"]
