@@ -1,10 +1,8 @@
 """From runs to a result: components with their error bars, and what they cost."""
 
-import math
-
 import numpy as np
 
-from ..accuracy import relative_error
+from ..accuracy import bound
 from ..result import INTEGRATED, Cost
 from .estimate import COMPONENT_OF, Estimate, assemble, channel_weights, noise, shared_seconds, valid_size
 
@@ -78,16 +76,22 @@ def errors(plan, run, direction):
 
 
 def worst_error(plan, run, direction, of):
-    """Largest relative error of the components of a run in one direction, see `goniosim.accuracy.relative_error`.
-
-    What nodes may be off by counts as an error too.
-    """
+    """What a target is held against in one direction: the largest `goniosim.accuracy.bound` of a run's components."""
     size, weights = valid_size(plan, direction), channel_weights(plan)
     found = []
     for side in run.sides:
         one = run.estimate(side, direction)
         total = one.energy.sum(axis=(1, 2)), one.total_stderr
-        error = relative_error(of, one.energy, one.stderr, total, size, weights)
+        found.append(bound(of, one.energy, one.stderr, total, size, weights, one.noise, one.bias))
+    return max(found)
+
+
+def floor(plan, run, direction):
+    """What nodes may be off by in one direction, relative to the slice: the largest of a run's components, or 0."""
+    found = [0.0]
+    for side in run.sides:
+        one = run.estimate(side, direction)
         whole = noise(plan, direction, one.energy)
-        found.append(math.hypot(error, one.bias / whole) if one.bias and whole > 0.0 else error)
+        if one.bias and whole > 0.0:
+            found.append(one.bias / whole)
     return max(found)

@@ -1,8 +1,9 @@
-"""Runs on threads: a number of rays, or round after round until an accuracy is reached."""
+"""Runs on threads: a number of rays, or round after round until all are as accurate as asked for."""
 
 import math
 import threading
 import time
+from collections import deque
 
 from .ordered import in_order
 
@@ -86,33 +87,49 @@ class Drive:
         for direction in sorted({one.direction for one in works} - noted):
             _finish(run, direction, note)
 
-    def reach(self, run, directions, reached, limit, note):
-        """Do rounds of a run, in each direction until it is as accurate as asked for.
+    def reach(self, runs, judge, instead, limit, do):
+        """Do rounds of all runs in turn, in each direction until it is as accurate as asked for.
+
+        What is easy is left behind, so that the time goes to what is hard, be it a component or a direction.
 
         Parameters
         ----------
-        run : AnalogRun or ReplicatedRun
-        directions : list of int
-        reached : callable
-            ``reached(run, direction)``.
+        runs : list of AnalogRun or ReplicatedRun
+        judge : callable
+            ``judge(run, direction)``: whether it is as accurate as asked for, None if it will never be.
+        instead : callable
+            ``instead(run)`` after the first round of a run: another one that takes its place, or None.
         limit : Limit
-        note : callable
-            As for `do`.
+            Of all runs together.
+        do : callable
+            Called as ``do(run, works)``.
 
         Returns
         -------
-        list of int
-            Directions that were not reached.
+        bool
+            Whether all directions of all runs were reached.
         """
-        left, number = list(directions), 0
-        while left and not self._stop.is_set() and limit.allows(run, left, number):
-            started = time.perf_counter()
-            self.expect(len(left) * run.rays_of_round(number))
-            self.do(run, run.round(number, left), note)
-            limit.took(time.perf_counter() - started)
-            left = [m for m in left if not reached(run, m)]
+        turn, number, missed = [(run, list(range(len(run.rays)))) for run in runs], 0, False
+        while turn:
+            waiting, turn = deque(turn), []
+            while waiting:
+                run, directions = waiting.popleft()
+                if self.stopped or not limit.allows(run, directions, number):
+                    missed = True
+                    continue
+                started = self.now()
+                do(run, run.round(number, directions))
+                other = instead(run) if number == 0 else None
+                if other is not None:
+                    waiting.append((other, directions))
+                    continue
+                limit.took(run, self.now() - started, len(directions) * run.rays_of_round(number))
+                verdicts = {m: judge(run, m) for m in directions}
+                missed |= None in verdicts.values()
+                if False in verdicts.values():
+                    turn.append((run, [m for m in directions if verdicts[m] is False]))
             number += 1
-        return left
+        return not missed
 
 
 def _finish(run, direction, note):
@@ -127,25 +144,26 @@ class Limit:
     Parameters
     ----------
     max_rays : int or None
-        Of each direction.
+        Of each direction of a run.
     max_seconds : float or None
-        Of wall-clock time, from now on.
+        Of wall-clock time of all runs together, from now on.
     """
 
     def __init__(self, max_rays, max_seconds):
         self._max_rays = math.inf if max_rays is None else max_rays
         self._end = math.inf if max_seconds is None else time.perf_counter() + max_seconds
-        self._last_seconds = 0.0
+        self._pace = {}
 
-    def took(self, seconds):
-        """Learn how long a round took."""
-        self._last_seconds = seconds
+    def took(self, run, seconds, paths):
+        """Learn how long a round of a run took, with so many light paths in all directions."""
+        self._pace[run] = seconds / paths
 
     def allows(self, run, directions, number):
-        """Whether another round may be begun; the first one always may."""
+        """Whether a run may begin another round of some directions; the first one it always may."""
         if number == 0:
             return True
-        # The next round is twice as large as the last.
-        return time.perf_counter() + 2.0 * self._last_seconds <= self._end and all(
-            run.rays[m] + run.rays_of_round(number) <= self._max_rays for m in directions
+        paths = run.rays_of_round(number)
+        predicted = self._pace[run] * len(directions) * paths
+        return time.perf_counter() + predicted <= self._end and all(
+            run.rays[m] + paths <= self._max_rays for m in directions
         )

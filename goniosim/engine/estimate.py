@@ -7,6 +7,7 @@ import numpy as np
 from ..accuracy import norm
 from ..effective import uncertain
 from ..result import AUDIT_ENTRIES, Audit, Cells, Component
+from ..sums import Batches, Paths
 from .layout import DOWN, UP
 
 COMPONENT_OF = {UP: "reflection/internal", DOWN: "transmission"}
@@ -125,6 +126,13 @@ class Estimate:
     hits: np.ndarray | None = None
     batches: np.ndarray | None = None
     bias: float | None = None
+
+    @property
+    def noise(self):
+        """How the noise of the cells hangs together, see `goniosim.sums`."""
+        if self.batches is None:
+            return Paths(self.energy, self.count)
+        return Batches(self.energy, self.stderr, self.batches)
 
 
 def assemble(plan, estimates, estimator, contains_delta):

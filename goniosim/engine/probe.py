@@ -11,10 +11,12 @@ from ..cores import granted_threads
 from .estimators import ESTIMATORS
 from .estimators.choose import ANALOG, choose
 from .faint import faint_weights
+from .gain import expected
 from .layout import LOST_CAP
 from .memory import threads_of
 from .plan import Plan, make_plan
-from .trial import replicated_seconds
+from .rounds import FEWEST_PATHS
+from .trial import try_replicates
 from .unit import Tally, Workspace, unit_key
 
 # Rays between two looks at the clock: fewer where each of them meets many interfaces.
@@ -78,6 +80,9 @@ class Probe:
         Rays traced, all directions together.
     lost_event_cap : float
         Share of the flux that was lost at the event cap, the largest of all directions and channels.
+    gains : dict of str to float
+        By component, how many times the processor time independent paths would take for the same noise; without
+        those of independent paths, and where the probe saw nothing.
     """
 
     rays_per_second: float
@@ -85,6 +90,7 @@ class Probe:
     compile_seconds: float
     rays: int
     lost_event_cap: float
+    gains: dict
 
 
 def probe(scene, seconds=1.0):
@@ -120,18 +126,21 @@ def probe(scene, seconds=1.0):
     elapsed = time.perf_counter() - start
     rays, events, lost = (sum(total[i] for total in totals) for i in range(3))
     rate, events_per_ray = rays.sum() / elapsed, events / rays.sum()
-    asked = scene.simulation.most_rays
     choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
-    replicated = [replicated_seconds(plan, each, asked, threads) for each in choices if each.estimator != ANALOG]
-    if replicated:
-        whole = sum(each[0] for each in replicated)
-        if len(replicated) < len(choices):
+    tried = [try_replicates(plan, each) for each in choices if each.estimator != ANALOG]
+    histogram = sum(tally.histogram for _, tally in spaces)
+    gains = expected(plan, tried, histogram, int(rays.sum()), threads / rate, scene.simulation.rays or FEWEST_PATHS)
+    if tried:
+        asked = scene.simulation.most_rays
+        whole = sum(each.shared + each.seconds(asked) / threads for each in tried)
+        if len(tried) < len(choices):
             whole += directions * asked / rate
-        rate, events_per_ray = directions * asked / whole, sum(each[1] for each in replicated)
+        rate, events_per_ray = directions * asked / whole, sum(each.events_per_path for each in tried)
     return Probe(
         rays_per_second=rate,
         events_per_ray=events_per_ray,
         compile_seconds=compile_seconds,
         rays=int(rays.sum()),
         lost_event_cap=float((lost / np.maximum(rays, 1)[:, None]).max()),
+        gains=gains,
     )

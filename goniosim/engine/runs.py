@@ -54,6 +54,11 @@ class Spending:
         self.events[direction] += events
         self.cpu_seconds[direction] += cpu_seconds
 
+    def take_over(self, other):
+        """Book what was spent on a run whose place this one takes."""
+        self.events += other.events
+        self.cpu_seconds += other.cpu_seconds
+
     def note(self, direction, rays, seconds, errors):
         """Note a checkpoint.
 

@@ -88,7 +88,7 @@ def _simulate(scene, plan, threads, progress, stop):
         audit=estimate.audit(plan, session.audit.ledgers, session.audit.part_rays, found["reflection/direct"]),
         cost=assembly.cost(plan, session.runs),
         effects={effect.name: effect.active for effect in effects(scene)},
-        provenance={**provenance(threads), "estimator_choice": session.reasons},
+        provenance={**provenance(threads), **session.provenance},
         target_reached=session.reached,
     )
 

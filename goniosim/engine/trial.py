@@ -1,11 +1,15 @@
 """How long replicates take, from a trial of two sizes: what each costs in any case, and what a light path adds."""
 
+import math
 import threading
 import time
+from dataclasses import dataclass
 
 import numpy as np
 
+from .estimate import noise
 from .estimators import ESTIMATORS
+from .replicates import unfold
 from .rounds import REPLICATES, SMALLEST, sizes
 from .unit import child_key
 
@@ -14,25 +18,58 @@ BRANCH = 4
 # The largest size that is tried, as doublings of the smallest; seconds that a path takes at the least.
 DOUBLINGS = 4
 FASTEST = 1e-9
+# Replicates of the smallest size whose scatter tells their noise to a sixth.
+FEWEST = 16
 
 
-def replicated_seconds(plan, choice, rays, threads):
-    """Predict the time of a run of replicates.
+@dataclass(frozen=True)
+class Trial:
+    """What a run of replicates costs, and how noisy it is.
+
+    Attributes
+    ----------
+    shared : float
+        Seconds of what all directions share.
+    fixed, slope : float
+        Seconds of a call whatever the size of its replicates, and for each unit of that size.
+    calls : int
+        In a round, over all directions.
+    events_per_path : float
+    slices : dict of int to ndarray, shape (distinct channels, rows, columns)
+        By way out, energies of the middle one of the incident directions.
+    spread : dict of int to float
+        By way out, noise of those of a single replicate of the smallest size, in sr^-1/2.
+    """
+
+    shared: float
+    fixed: float
+    slope: float
+    calls: int
+    events_per_path: float
+    slices: dict
+    spread: dict
+
+    def seconds(self, rays):
+        """Seconds of replicates of so many light paths of each direction, on one thread."""
+        return self.calls * sum(self.fixed + self.slope * size for size in sizes(rays))
+
+    def noise(self, side, rays):
+        """Noise of a slice after so many light paths, in sr^-1/2; that of a lattice falls faster."""
+        return self.spread[side] * math.sqrt(SMALLEST / (REPLICATES * sum(sizes(rays))))
+
+
+def try_replicates(plan, choice):
+    """Make some replicates of one direction.
 
     Parameters
     ----------
     plan : goniosim.engine.plan.Plan
     choice : goniosim.engine.estimators.choose.Choice
         Of another estimator than the analog one.
-    rays : int
-        Light paths of each direction.
-    threads : int
 
     Returns
     -------
-    seconds : float
-        Of wall-clock time.
-    events_per_path : float
+    Trial
     """
     estimator = ESTIMATORS[choice.estimator](plan, choice.sides)
     start = time.perf_counter()
@@ -41,15 +78,18 @@ def replicated_seconds(plan, choice, rays, threads):
     workspace = estimator.workspace()
     slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
     out = np.empty((estimator.chunk, slots, plan.n_distinct, plan.rows, plan.width))
-    keys = np.array([child_key(child_key(0, BRANCH), i) for i in range(estimator.chunk)], np.uint64)
     middle = len(plan.theta_deg) // 2
 
-    def run(size):
+    def run(size, number=0):
+        keys = [child_key(child_key(0, BRANCH), number + i) for i in range(estimator.chunk)]
         start = time.perf_counter()
-        events = workspace.run(middle, size, keys, out, threading.Event())
+        events = workspace.run(middle, size, np.array(keys, np.uint64), out, threading.Event())
         return time.perf_counter() - start, events
 
-    small = min(run(SMALLEST)[0] for _ in range(2))
+    small, found = np.inf, []
+    for number in range(0, FEWEST, estimator.chunk):
+        small = min(small, run(SMALLEST, number)[0])
+        found.append(out.copy())
     for size in (SMALLEST << doublings for doublings in range(1, DOUBLINGS + 1)):
         large, events = run(size)
         # What a path adds must stand out of what a replicate costs in any case.
@@ -57,7 +97,18 @@ def replicated_seconds(plan, choice, rays, threads):
             break
     slope = max((large - small) / (size - SMALLEST), FASTEST)
     fixed = max(small - slope * SMALLEST, 0.0)
-    chunks = -(-REPLICATES // estimator.chunk)
-    found = sizes(rays)
-    seconds = chunks * sum(fixed + slope * size for size in found) * len(plan.theta_deg)
-    return shared + seconds / threads, events / float(size * len(keys))
+    slices, spread = {}, {}
+    for side, energies in _by_way_out(plan, choice.sides, np.concatenate(found)):
+        slices[side] = energies.mean(axis=0)
+        spread[side] = noise(plan, middle, energies.std(axis=0, ddof=1))
+    calls = -(-REPLICATES // estimator.chunk) * len(plan.theta_deg)
+    return Trial(shared, fixed, slope, calls, events / float(size * estimator.chunk), slices, spread)
+
+
+def _by_way_out(plan, sides, found):
+    """Ways out, each with its slices [replicate, channel, row, column]."""
+    first = 0
+    for side in sides:
+        count = int(plan.slots[side, 1])
+        yield side, unfold(found[:, first : first + count].sum(axis=1), plan.columns)
+        first += count

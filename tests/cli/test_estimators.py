@@ -50,6 +50,7 @@ def test_results_of_estimators_serve_all_commands(folder, goniosim, scene, name,
     code, out, _ = goniosim("info", f"{name}.h5")
     assert code == 0 and f"estimator {estimator}" in out and f"{main}: {estimator} (as asked for)" in out
     assert "Accuracy: relative standard error of slice" in out
+    assert f"{main}: " in said["provenance"]["estimator_gain"] and "estimator_gain " in out
     assert goniosim("plot", f"{name}.h5", "--theta", 60, "-o", "pictures")[0] == 0
     assert goniosim("compare", f"{name}.h5", "--models", "bati19_ww", "--figures", "none", "-q")[0] == 0
 
@@ -73,10 +74,15 @@ def test_an_estimator_that_does_not_apply_is_refused_with_the_reason(folder, gon
 def test_check_says_who_serves_what(folder, goniosim, scene, monkeypatch):
     monkeypatch.setattr("goniosim.report.simulation.forecast.PROBE", 0.01)
     path = scene("slab")
-    few = json.loads(goniosim("check", path, "--json")[1])["estimators"]
-    assert few == ["reflection/internal and transmission: analog (fewer than 131072 rays are too few for replicates)"]
+    few = json.loads(goniosim("check", path, "--json")[1])
+    assert few["estimator_gains"] == {}
+    assert few["estimators"] == [
+        "reflection/internal and transmission: analog (fewer than 131072 rays are too few for replicates)"
+    ]
     many = json.loads(goniosim("check", path, "--rays", "1e6", "--json")[1])["estimators"]
     assert [line.split(" (")[0] for line in many] == ["reflection/internal: operator", "transmission: operator"]
+    _, out, _ = goniosim("check", path, "--rays", "1e6")
+    assert all(f"  gain        {name}: " in out for name in ("reflection/internal", "transmission"))
 
 
 @pytest.mark.parametrize("of", ["slice", "albedo", "cells"])

@@ -239,3 +239,10 @@ def test_check_of_a_study_with_a_target(goniosim, folder, short_probe):
     assert "  Together: 30 min, at most" in out
     fewest = json.loads(goniosim("check", "scene.yaml", "--target", "1%", "--max-rays", "1e9", "--json")[1])
     assert fewest["seconds"] == pytest.approx(1e9 / fewest["rays_per_second"])
+
+
+def test_a_miss_of_the_operator_names_what_limits_it(goniosim, folder, aimed):
+    aimed["missed"].add("small")
+    code, _, err = call(goniosim, "--target 1% --estimator operator")
+    said = "ask for less, or leave the estimator to auto: what nodes may be off by limits this one"
+    assert code == 9 and err.splitlines()[-1].endswith(f"the result is kept: {said}")

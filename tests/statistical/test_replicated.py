@@ -5,13 +5,17 @@ import threading
 import numpy as np
 import pytest
 
+from goniosim import simulate
 from goniosim.effective import effective_count
 from goniosim.engine import assembly
 from goniosim.engine.analog import AnalogRun
 from goniosim.engine.drive import Drive
+from goniosim.engine.estimate import noise
+from goniosim.engine.gain import gains, noise_of_a_path
 from goniosim.engine.layout import DOWN, UP
 from goniosim.engine.plan import make_plan
 from goniosim.engine.replicated import ReplicatedRun
+from goniosim.engine.rounds import FEWEST_PATHS
 from plain import Plain
 from reference.scenes import dielectric, make_scene, medium
 
@@ -136,3 +140,28 @@ def test_a_stop_keeps_whole_replicates():
     size = 50_016 // 32
     assert not run.finished and 8 * size <= run.rays[0] < 50_000 and run.rays[0] % size == 0
     assert len(run.spending.checkpoints[0]) == 1 and run.estimate(DOWN, 0).energy.sum() > 0.3
+
+
+def test_a_few_paths_without_slices_tell_the_noise_of_independent_paths(pair):
+    plan, analog, run = pair
+    short = shot(AnalogRun(plan.in_one_cell(), 3), rays=50_000)
+    for side in (UP, DOWN):
+        for m in range(2):
+            energy = run.estimate(side, m).energy
+            told = noise_of_a_path(plan, m, energy, short.estimate(side, m)) / np.sqrt(analog.rays[m])
+            assert told == pytest.approx(noise(plan, m, analog.estimate(side, m).stderr), rel=0.1)
+    # Replicates of independent paths gain a factor of two where they are folded; a busy machine blurs it.
+    found = gains(plan, [run], short)
+    assert set(found) == {"reflection/internal", "transmission"} and all(0.1 < gain < 10.0 for gain in found.values())
+    assert gains(plan, [analog], short) == {}
+
+
+def test_both_components_of_a_slab_grow_until_the_limit():
+    layers = [dielectric(1.5, 0.2), dielectric(1.0, 0.2)]
+    scene = make_scene(layers, 30.0, rows=9, columns=36)
+    # What its nodes may be off by leaves room for it.
+    found = simulate(scene, target=3.5e-4, max_rays=4e5)
+    assert found.target_reached is False and found.rays.tolist() == [3 * FEWEST_PATHS]
+    for name in ("reflection/internal", "transmission"):
+        assert found.components[name].estimator == ["operator"]
+        assert (np.diff(found.cost.error[name]) < 0.0).all()

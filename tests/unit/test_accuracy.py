@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from goniosim.accuracy import READINGS, norm, relative_error
+from goniosim.accuracy import READINGS, bound, norm, relative_error
+from goniosim.sums import Batches, Paths
 
 SIZE = np.array([[0.5, 0.5, 0.0], [1.0, 1.0, 0.5]])
 ENERGY = np.array([[[0.1, 0.2, 0.3], [0.4, 0.0, 0.1]], [[0.0] * 3] * 2])
@@ -46,3 +47,33 @@ def test_dim_cells_and_few_bad_ones_do_not_count():
     stderr[0, 0, 960:] = 1.0
     stderr[0, 0, :30] = 1.0
     assert relative_error("cells", energy, stderr, None, np.ones((1, 1000)), np.ones(1)) == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(("cells", "quantile"), [(1, 1.645), (4, 1.395), (10_000, 1.0091)])
+def test_a_target_is_held_against_what_the_true_error_stays_below_in_nine_of_ten_runs(cells, quantile):
+    """Of so many equal cells: roots of the 90 % quantiles of chi-square over its degrees of freedom."""
+    energy, size = np.full((1, 1, cells), 1.0 / cells), np.ones((1, cells))
+    stderr, total = 0.01 * energy, (np.ones(1), np.full(1, 0.01 / np.sqrt(cells)))
+    # So many paths that what they share is nothing.
+    noise = Paths(energy, 10**12)
+    assert bound("slice", energy, stderr, total, size, np.ones(1), noise) == pytest.approx(0.01 * quantile, rel=0.02)
+    assert bound("cells", energy, stderr, total, size, np.ones(1), noise) == pytest.approx(0.01)
+    albedo = 0.01 * 1.645 / np.sqrt(cells)
+    assert bound("albedo", energy, stderr, total, size, np.ones(1), noise) == pytest.approx(albedo, rel=0.02)
+
+
+def test_cells_that_share_their_noise_count_as_one():
+    shared = np.random.default_rng(1).normal(1.0, 0.3, 32)
+    energy = np.full((1, 10, 10), shared.mean() / 100.0)
+    stderr = energy * shared.std(ddof=1) / np.sqrt(32) / shared.mean()
+    noise = Batches(energy, stderr, np.broadcast_to(shared[:, None, None, None] / 100.0, (32, 1, 10, 10)))
+    given = "slice", energy, stderr, (np.ones(1), np.zeros(1)), np.ones((10, 10)), np.ones(1)
+    # The 95 % quantile of Student's t with 31 degrees of freedom.
+    assert bound(*given, noise) == pytest.approx(1.696 * relative_error(*given), rel=0.02)
+    assert bound(*given, None) == pytest.approx(1.645 * relative_error(*given), rel=0.02)
+
+
+def test_what_nodes_may_be_off_by_counts_too():
+    given = "cells", ENERGY, 0.03 * ENERGY, TOTAL, SIZE, np.array([1.0, 0.0])
+    whole = norm(ENERGY, SIZE)[0]
+    assert bound(*given, None, 0.04 * whole) == pytest.approx(0.05)

@@ -59,11 +59,15 @@ def test_an_error_ends_all():
     assert stop.is_set()
 
 
-class Counted:
-    """A run in which a direction is accurate after so many rounds."""
+NEVER = 0
 
-    def __init__(self, needed):
+
+class Counted:
+    """A run in which a direction is accurate after so many rounds; a ray of it takes so many seconds."""
+
+    def __init__(self, *needed, seconds=0.0):
         self.needed = needed
+        self.seconds = seconds
         self.rounds = [0] * len(needed)
         self.asked = []
 
@@ -71,41 +75,92 @@ class Counted:
     def rays(self):
         return [100 * ((1 << rounds) - 1) for rounds in self.rounds]
 
-    gathered = True
-
     def rays_of_round(self, number):
         return 100 << number
 
     def round(self, number, directions):
         self.asked.append(tuple(directions))
-        return []
-
-    def reached(self, _, direction):
-        self.rounds[direction] += 1
-        return self.rounds[direction] >= self.needed[direction]
+        return [(number, m) for m in directions]
 
 
-def reach(run, limit, stop=None):
+class Clock:
+    """Stands still unless it is moved."""
+
+    seconds = 0.0
+
+    def perf_counter(self):
+        return self.seconds
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    made = Clock()
+    monkeypatch.setattr("goniosim.engine.drive.time", made)
+    return made
+
+
+def reach(runs, limit, stop=None, clock=None, instead=lambda run: None, given=None):
+    """Whether all was reached; the order of the rounds, by number of the run and of the round."""
+    clock = clock or Clock()
     drive = Drive(1, stop or threading.Event(), lambda done, total: None)
-    return drive.reach(run, list(range(len(run.needed))), run.reached, limit, None)
+    order = []
+
+    def do(run, works):
+        order.append((runs.index(run), works[0][0]))
+        for number, m in works:
+            run.rounds[m] += 1
+            clock.seconds += run.seconds * run.rays_of_round(number)
+
+    def judge(run, m):
+        return None if run.needed[m] == NEVER else run.rounds[m] >= run.needed[m]
+
+    return drive.reach(given or runs, judge, instead, limit, do), order
 
 
 def test_easy_directions_stop_early():
-    run = Counted([1, 3, 2])
-    assert reach(run, Limit(None, None)) == []
+    run = Counted(1, 3, 2)
+    assert reach([run], Limit(None, None))[0] is True
     assert run.asked == [(0, 1, 2), (1, 2), (1,)]
 
 
+def test_runs_take_turns_and_easy_ones_stop_early():
+    easy, hard = Counted(1, 1), Counted(1, 4)
+    assert reach([easy, hard], Limit(None, None)) == (True, [(0, 0), (1, 0), (1, 1), (1, 2), (1, 3)])
+    assert hard.asked == [(0, 1), (1,), (1,), (1,)]
+
+
+def test_what_can_never_be_reached_ends_by_itself():
+    assert reach([Counted(NEVER, 3), Counted(1)], Limit(None, None)) == (False, [(0, 0), (1, 0), (0, 1), (0, 2)])
+
+
+def test_another_run_takes_the_place_of_one_after_its_first_round():
+    runs = [Counted(NEVER), Counted(2), Counted(2)]
+    instead = {runs[0]: runs[2]}.get
+    order = [(0, 0), (1, 0), (2, 0), (1, 1), (2, 1)]
+    assert reach(runs, Limit(None, None), instead=instead, given=runs[:2]) == (True, order)
+
+
 def test_limits_end_what_is_not_reached():
-    assert reach(Counted([1, 9]), Limit(1500, None)) == [1]
-    run = Counted([9])
-    reach(run, Limit(1500, None))
-    assert run.rays[0] == 1500
-    assert reach(Counted([1, 9]), Limit(None, 0.0)) == [1]
+    assert reach([Counted(1, 9)], Limit(1500, None)) == (False, [(0, number) for number in range(4)])
+    runs = [Counted(9), Counted(2), Counted(9)]
+    assert reach(runs, Limit(700, None))[0] is False
+    assert [run.rays for run in runs] == [[700], [300], [700]]
+
+
+def test_every_run_has_its_first_round_within_any_time(clock):
+    runs = [Counted(1, 9, seconds=1.0), Counted(9, seconds=1.0)]
+    assert reach(runs, Limit(None, 1e-3), clock=clock) == (False, [(0, 0), (1, 0)])
+
+
+def test_time_is_shared_and_what_is_too_short_for_one_run_serves_another(clock):
+    runs = [Counted(9, seconds=1.0), Counted(9, seconds=0.1)]
+    # Rounds take 100, 200, ... and 10, 20, ... seconds.
+    order = [(0, 0), (1, 0), (0, 1), (1, 1), (1, 2), (1, 3), (1, 4)]
+    assert reach(runs, Limit(None, 660.0), clock=clock) == (False, order)
+    assert clock.seconds == pytest.approx(300.0 + 310.0)
 
 
 def test_a_stop_ends_what_is_not_reached():
     stop = threading.Event()
     stop.set()
-    run = Counted([1, 2])
-    assert reach(run, Limit(None, None), stop) == [0, 1] and run.asked == []
+    assert reach([Counted(1, 2)], Limit(None, None), stop) == (False, [])

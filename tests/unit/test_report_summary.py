@@ -57,6 +57,7 @@ def test_the_forecast_warns_of_the_event_cap():
         memory=memory_needed(make_scene([lambert(0.5)], 0.0)),
         shortage=None,
         estimators=[],
+        gains={},
         memory_to_plot=0,
         memory_to_compare=0,
         probe_rays=80_000,

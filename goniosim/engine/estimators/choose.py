@@ -111,6 +111,25 @@ def _best(plan, side):
     raise AssertionError("the split walk serves every stack")
 
 
+def next_best(plan, sides, name, reason):
+    """The first estimator after ``name`` that serves some ways out, and the reason for leaving that.
+
+    Parameters
+    ----------
+    plan : goniosim.engine.plan.Plan
+    sides : tuple of int
+    name : str
+    reason : str
+
+    Returns
+    -------
+    Choice
+    """
+    names = list(ESTIMATORS)
+    later = names[names.index(name) + 1 :]
+    return Choice(next(each for each in later if ESTIMATORS[each].refusal(plan, sides) is None), sides, reason)
+
+
 def _named(plan, name, sides):
     """Groups of ways out that one instance of the estimator serves."""
     estimator = ESTIMATORS[name]

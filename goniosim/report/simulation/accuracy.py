@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-from ...accuracy import relative_error
+from ...accuracy import bound, relative_error
 from ...scene import parse_scene
+from ...sums import noise_of
 from .. import text
 
 # What is told of more accuracy.
@@ -31,25 +32,33 @@ def accuracy_lines(result):
     names = [name for name, component in result.components.items() if component.sampled]
     width = max(map(len, names), default=0)
     for name in names:
-        found = errors(result, name, of)
-        worst = int(np.argmax(found))
+        found, bounds = errors(result, name, of)
+        worst = int(np.argmax(found if target is None else bounds))
         angle = text.angles(result.theta_deg)[worst]
+        held = "" if target is None else f", held against the target: {100.0 * bounds[worst]:.2g} %"
         more = ", ".join(f"{factor} times better about {text.duration(cost)}" for factor, cost in prices(result, name))
-        lines.append(f"  {name.ljust(width)}   {100.0 * found[worst]:.2g} % at {angle} deg; {more}")
+        lines.append(f"  {name.ljust(width)}   {100.0 * found[worst]:.2g} % at {angle} deg{held}; {more}")
     return lines if names else []
 
 
 def errors(result, name, of):
-    """Relative standard errors of a component in all directions, see `goniosim.accuracy`; ndarray, shape (M,)."""
+    """Accuracy of a component in all directions, see `goniosim.accuracy`.
+
+    Returns
+    -------
+    relative_errors, bounds : ndarray, shape (M,)
+        Standard errors, and what a target is held against.
+    """
     component = result.components[name]
     size = np.where(result.cells.valid, result.cells.projected_solid_angle, 0.0)
     weights = np.full(len(result.channels), 1.0 / len(result.channels))
     found = []
     for m in range(len(result.theta_deg)):
         total = component.albedo[m], component.albedo_stderr[m]
-        error = relative_error(of, component.energy[m], component.stderr[m], total, size[m], weights)
-        found.append(error)
-    return np.array(found)
+        slices = of, component.energy[m], component.stderr[m], total, size[m], weights
+        bias = None if component.node_bias is None else component.node_bias[m]
+        found.append((relative_error(*slices), bound(*slices, noise_of(component, m, result.rays[m]), bias)))
+    return np.array(found).T
 
 
 def prices(result, name):

@@ -35,6 +35,8 @@ class Forecast:
         What is missing if that is more than is free here.
     estimators : list of str
         Which estimator serves which component, and why.
+    gains : dict of str to float
+        By component, how many times the processor time the analog estimator would take for the same noise.
     memory_to_plot, memory_to_compare : int
         Upper estimates of what the reports on the result take, `compare` with all models.
     probe_rays : int
@@ -54,6 +56,7 @@ class Forecast:
     memory: object
     shortage: str | None
     estimators: list
+    gains: dict
     memory_to_plot: int
     memory_to_compare: int
     probe_rays: int
@@ -131,6 +134,7 @@ def forecasts(scenes):
                 memory=memory_needed(scene),
                 shortage=short,
                 estimators=estimators_of(scene),
+                gains=measured.gains,
                 memory_to_plot=memory_to_plot(scene),
                 memory_to_compare=memory_to_compare(scene),
                 probe_rays=measured.rays,
@@ -171,6 +175,10 @@ def cost_text(made):
         lines = [
             f"Predicted, from a probe of about {text.duration(PROBE)}",
             *(f"  estimator   {line}" for line in one.estimators),
+            *(
+                f"  gain        {name}: analog takes {gain:.2g} times the CPU time for the same noise"
+                for name, gain in one.gains.items()
+            ),
             f"  speed       {text.rate(one.rays_per_second)}, {one.events_per_ray:.1f} events per ray",
             f"  time        {_time(one)}",
             f"  file size   at most {text.size(one.n_bytes)}",
@@ -273,6 +281,7 @@ def as_dict(scene, one):
         "memory": asdict(one.memory),
         "memory_shortage": one.shortage,
         "estimators": one.estimators,
+        "estimator_gains": one.gains,
         "report_memory_bytes": {"plot": one.memory_to_plot, "compare": one.memory_to_compare},
         "effects": {effect.name: {"active": effect.active, "why": effect.why} for effect in effects(scene)},
         "absent_interfaces": absent_interfaces(scene),

@@ -57,4 +57,6 @@ def shortfall(simulation):
     names = [name for name in LIMITS if getattr(simulation, name) is not None]
     within = f" with {limits(simulation)}" if names else ""
     remedy = f"raise {' or '.join(names)}, or ask for less" if names else "ask for less"
+    if simulation.estimator == "operator":
+        remedy += ", or leave the estimator to auto: what nodes may be off by limits this one"
     return f"the target of {simulation.target} was not reached{within}; the result is kept: {remedy}"
