@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cores import granted_threads
+from .blas import one_thread
 from .estimators import ESTIMATORS
 from .estimators.choose import ANALOG, choose
 from .faint import faint_weights
 from .layout import LOST_CAP
 from .memory import threads_of
-from .plan import Plan, make_plan
+from .plan import make_plan
 from .trial import replicated_seconds
 from .unit import Tally, Workspace, unit_key
 
@@ -22,19 +23,30 @@ _RAYS_PER_UNIT = 1 << 13
 _MOST_EVENTS = 1 << 18
 
 
+# Interfaces that catch light between them, so that the limit on the number of events may cut some of it off. Light
+# that has entered through the first of two finds its way out again.
+_FEWEST_TO_TRAP = 3
+
+
 def warm_up(scene):
-    """Compile the kernels, or load them from the cache; returns the seconds it took.
+    """Compile the kernels of a simulation, or load them from the cache; returns the seconds it took.
 
     Parameters
     ----------
-    scene : goniosim.scene.Scene or Plan
-        Of a plan, only those of the analog walk.
+    scene : goniosim.scene.Scene
     """
+    plan = make_plan(scene)
+    choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
+    # Where no slices are by independent paths, the energy balance is.
+    return _warm_up(plan, choices, walks=True)
+
+
+def _warm_up(plan, choices, walks):
     start = time.perf_counter()
-    plan = scene if isinstance(scene, Plan) else make_plan(scene)
-    Workspace(plan).run(0, 1, unit_key(0, 0, 0), Tally(plan), threading.Event())
-    if plan is not scene:
-        for choice in choose(plan, getattr(scene.simulation, "estimator", "auto"), scene.simulation.rays):
+    if walks:
+        Workspace(plan).run(0, 1, unit_key(0, 0, 0), Tally(plan), threading.Event())
+    with one_thread():
+        for choice in choices:
             _warm_up_replicates(plan, choice)
     return time.perf_counter() - start
 
@@ -55,10 +67,11 @@ def _warm_up_replicates(plan, choice):
     if choice.estimator not in ESTIMATORS or kind in _warm:
         return
     _warm.add(kind)
-    estimator = ESTIMATORS[choice.estimator](plan, choice.sides)
+    estimator = ESTIMATORS[choice.estimator].tiny(plan, choice.sides)
     estimator.prepare()
-    slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
-    out = np.empty((1, slots, plan.n_distinct, plan.rows, plan.width))
+    few = estimator.plan
+    slots = sum(int(few.slots[side, 1]) for side in choice.sides)
+    out = np.empty((1, slots, few.n_distinct, few.rows, few.width))
     estimator.workspace().run(0, 2, np.zeros(1, np.uint64), out, threading.Event())
 
 
@@ -73,9 +86,9 @@ class Probe:
     events_per_ray : float
         Mean number of interfaces a ray meets, or what costs as much.
     compile_seconds : float
-        Time to compile the kernels or to load them from the cache.
+        Time to compile the kernels of the trial, or to load them from the cache.
     rays : int
-        Rays traced, all directions together.
+        Independent rays traced, all directions together; 0 where nothing depends on them.
     lost_event_cap : float
         Share of the flux that was lost at the event cap, the largest of all directions and channels.
     """
@@ -88,10 +101,31 @@ class Probe:
 
 
 def probe(scene, seconds=1.0):
-    """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`."""
+    """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`.
+
+    The independent paths of the energy balance are few: nothing is tried of them but whether they are caught.
+    """
     plan = make_plan(scene)
     threads = granted_threads(threads_of(scene))
-    compile_seconds = warm_up(scene)
+    choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
+    replicated = [choice for choice in choices if choice.estimator != ANALOG]
+    walks = len(replicated) < len(choices) or len(plan.kinds) >= _FEWEST_TO_TRAP
+    compile_seconds = _warm_up(plan, choices, walks)
+    rays, events, lost, elapsed = _walk(scene, plan, threads, seconds) if walks else (0, 0, 0.0, 0.0)
+    if replicated:
+        directions, asked = len(plan.theta_deg), scene.simulation.most_rays
+        tried = [replicated_seconds(plan, choice, asked, threads) for choice in replicated]
+        whole = sum(each[0] for each in tried)
+        if len(replicated) < len(choices):
+            whole += directions * asked * elapsed / rays
+        rate, events_per_ray = directions * asked / whole, sum(each[1] for each in tried)
+    else:
+        rate, events_per_ray = rays / elapsed, events / rays
+    return Probe(rate, events_per_ray, compile_seconds, rays, lost)
+
+
+def _walk(scene, plan, threads, seconds):
+    """Independent paths: rays, events, largest share lost at the event cap, and seconds."""
     directions = len(plan.theta_deg)
     faint = faint_weights(plan)
     unit_rays = max(1, min(_RAYS_PER_UNIT, _MOST_EVENTS // len(plan.kinds)))
@@ -119,19 +153,4 @@ def probe(scene, seconds=1.0):
         totals = list(pool.map(work, range(threads)))
     elapsed = time.perf_counter() - start
     rays, events, lost = (sum(total[i] for total in totals) for i in range(3))
-    rate, events_per_ray = rays.sum() / elapsed, events / rays.sum()
-    asked = scene.simulation.most_rays
-    choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
-    replicated = [replicated_seconds(plan, each, asked, threads) for each in choices if each.estimator != ANALOG]
-    if replicated:
-        whole = sum(each[0] for each in replicated)
-        if len(replicated) < len(choices):
-            whole += directions * asked / rate
-        rate, events_per_ray = directions * asked / whole, sum(each[1] for each in replicated)
-    return Probe(
-        rays_per_second=rate,
-        events_per_ray=events_per_ray,
-        compile_seconds=compile_seconds,
-        rays=int(rays.sum()),
-        lost_event_cap=float((lost / np.maximum(rays, 1)[:, None]).max()),
-    )
+    return int(rays.sum()), events, float((lost / np.maximum(rays, 1)[:, None]).max()), elapsed

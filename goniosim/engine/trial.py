@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 
+from .blas import one_thread
 from .estimators import ESTIMATORS
 from .rounds import REPLICATES, SMALLEST, sizes
 from .unit import child_key
@@ -35,9 +36,21 @@ def replicated_seconds(plan, choice, rays, threads):
     events_per_path : float
     """
     estimator = ESTIMATORS[choice.estimator](plan, choice.sides)
-    start = time.perf_counter()
-    estimator.prepare()
-    shared = time.perf_counter() - start
+    with one_thread():
+        start = time.perf_counter()
+        estimator.prepare()
+        shared = time.perf_counter() - start
+        small, size, large, events = _two_sizes(plan, choice, estimator)
+    slope = max((large - small) / (size - SMALLEST), FASTEST)
+    fixed = max(small - slope * SMALLEST, 0.0)
+    chunks = -(-REPLICATES // estimator.chunk)
+    found = sizes(rays)
+    seconds = chunks * sum(fixed + slope * size for size in found) * len(plan.theta_deg)
+    return shared + seconds / threads, events / float(size * estimator.chunk)
+
+
+def _two_sizes(plan, choice, estimator):
+    """Seconds of a chunk of the smallest replicates; size, seconds and events of one of larger ones."""
     workspace = estimator.workspace()
     slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
     out = np.empty((estimator.chunk, slots, plan.n_distinct, plan.rows, plan.width))
@@ -55,9 +68,4 @@ def replicated_seconds(plan, choice, rays, threads):
         # What a path adds must stand out of what a replicate costs in any case.
         if large > 2.0 * small:
             break
-    slope = max((large - small) / (size - SMALLEST), FASTEST)
-    fixed = max(small - slope * SMALLEST, 0.0)
-    chunks = -(-REPLICATES // estimator.chunk)
-    found = sizes(rays)
-    seconds = chunks * sum(fixed + slope * size for size in found) * len(plan.theta_deg)
-    return shared + seconds / threads, events / float(size * len(keys))
+    return small, size, large, events
