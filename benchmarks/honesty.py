@@ -5,13 +5,14 @@
 One row for each stack, component, estimator, incident angle and number of paths. ``ratio`` is the true over the stated
 variance, both as the norm of Eq. 4 (Bati et al. 2019). The other columns are shares of |z| < 2: of cells that hold
 more than 3 % of the peak, and of blocks of 6 x 12 cells by their share of the energy. z is the deviation from the mean
-of the other seeds, over the root of the stated variance and of that of the mean. Cells and blocks that are marked
-uncertain in most seeds do not count (a choice by each seed's own mark would be one by its deviation); ``unsure`` is the
-share of marks among the bright cells. What replicates state follows Student's t with
-31 degrees of freedom, and what independent paths state is nearly normal.
+of the other seeds, over the root of the stated variance and of that of the mean. Cells and blocks count that the rule
+of `goniosim.effective` finds certain by the means over all seeds: a choice by each seed's own marks would be one by its
+deviation. ``unsure`` is the share of marks among the bright cells. What replicates state follows Student's t with 31
+degrees of freedom, and what independent paths state is nearly normal.
 
 A row fails if the ratio is off by more than 5 %, or a share by more than 1.5 points (3 points at 1e-5), and by more
-than three of its standard errors, as the seeds tell them: a handful of seeds tells little of those. What holds below 1e-5 is told without a verdict.
+than three of its standard errors, as the seeds tell them (of few numbers at least their own): a handful of seeds tells
+little of those. What holds below 1e-5 is told without a verdict.
 """
 
 import argparse
@@ -68,11 +69,31 @@ def within_two(freedom):
 
 
 def told(values):
-    """Mean of what each seed tells, and its standard error; seeds that tell nothing are NaN."""
-    values = np.asarray(values)[np.isfinite(values)]
-    if len(values) < 2:
+    """Mean of what each seed tells, and its standard error."""
+    return float(np.mean(values)), float(np.std(values, ddof=1) / math.sqrt(len(values)))
+
+
+def share_told(z, counts, expected):
+    """Share of |z| < 2 where it counts, and its standard error: by the seeds, and at least that of single numbers.
+
+    Parameters
+    ----------
+    z : iterable of ndarray
+        Of each seed.
+    counts : ndarray of bool
+    expected : float
+        The share that it should be.
+
+    Returns
+    -------
+    share, stderr : float
+        NaN if nothing counts.
+    """
+    if not counts.any():
         return math.nan, math.nan
-    return float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(values)))
+    shares = [float((np.abs(each[counts]) < 2.0).mean()) for each in z]
+    share, error = told(shares)
+    return share, max(error, math.sqrt(expected * (1.0 - expected) / (counts.sum() * len(shares))))
 
 
 def deviations(value, variance, mean, variance_sum, seeds):
@@ -90,12 +111,6 @@ def deviations(value, variance, mean, variance_sum, seeds):
     away = (value - mean) * (seeds / others)
     error2 = variance + (variance_sum - variance) / others**2
     return np.divide(away, np.sqrt(error2), out=np.full(away.shape, np.nan), where=error2 > 0.0)
-
-
-def share_within(z, counts):
-    """Share of |z| < 2 where it counts; NaN if nothing does."""
-    counts = counts & np.isfinite(z)
-    return float((np.abs(z[counts]) < 2.0).mean()) if counts.any() else math.nan
 
 
 @dataclass(frozen=True)
@@ -154,7 +169,7 @@ class Slice:
         with tempfile.NamedTemporaryFile(dir=folder, delete=False) as place:
             self._cells = np.memmap(place.name, dtype=float, mode="w+", shape=(seeds, 3, *shape))
         self._blocks = []
-        self._n = 0
+        self._n = self._number = 0
         self.estimator = ""
 
     def add(self, result, name, direction):
@@ -165,13 +180,15 @@ class Slice:
         self._cells[self._n] = energy, stderr**2, component.uncertain[direction]
         self._n += 1
         if self.estimator == "analog":
-            number, rays = result.rays[direction], max(int(result.rays[direction]) - 1, 1)
+            self._number = int(result.rays[direction])
             sums = block_sums(energy)
-            variance = block_sums(stderr**2) - (sums**2 - block_sums(energy**2)) / rays
+            shared = (sums**2 - block_sums(energy**2)) / max(self._number - 1, 1)
+            variance = np.maximum(block_sums(stderr**2) - shared, 0.0)
         else:
-            number, batches = BATCHES, component.batches[direction]
-            sums, variance = batches.mean(axis=0), batches.var(axis=0, ddof=1) / len(batches)
-        self._blocks.append((sums, variance, uncertain(sums, np.sqrt(np.maximum(variance, 0.0)), number)))
+            batches = component.batches[direction]
+            self._number = len(batches)
+            sums, variance = batches.mean(axis=0), batches.var(axis=0, ddof=1) / self._number
+        self._blocks.append((sums, variance))
 
     def row(self, stack, component, theta_deg, paths, cells, direction):
         """A `Row` of what the seeds tell."""
@@ -186,13 +203,11 @@ class Slice:
         ratio = top / bottom
         peak = np.max(np.divide(mean, size, out=np.zeros(mean.shape), where=size > 0.0), axis=(-1, -2), keepdims=True)
         bright = (mean > BRIGHT * peak * size) & (size > 0.0)
-        found = {"bright": []}
-        certain = sum(one[2] for one in self._cells) <= 0.5 * seeds
-        for one in self._cells:
-            z = deviations(one[0], one[1], mean, variance, seeds)
-            found["bright"].append(share_within(z, bright & certain))
+        expected = within_two(math.inf if self.estimator == "analog" else BATCHES - 1)
+        counts = bright & ~uncertain(mean, np.sqrt(variance / seeds), self._number)
+        z = (deviations(one[0], one[1], mean, variance, seeds) for one in self._cells)
+        shares = {"bright": share_told(z, counts, expected), **self._of_blocks(expected)}
         unsure = np.mean([one[2][bright].mean() for one in self._cells])
-        found |= self._of_blocks()
         return Row(
             stack=stack,
             component=component,
@@ -200,22 +215,21 @@ class Slice:
             theta_deg=float(theta_deg),
             paths=int(paths),
             ratio=(ratio, ratio * math.hypot(top_error / top, bottom_error / bottom)),
-            shares={name: told(shares) for name, shares in found.items()},
-            expected=within_two(math.inf if self.estimator == "analog" else BATCHES - 1),
+            shares=shares,
+            expected=expected,
             unsure=float(unsure),
         )
 
-    def _of_blocks(self):
-        sums, variances, unsure = (np.array([one[part] for one in self._blocks]) for part in range(3))
+    def _of_blocks(self, expected):
+        sums, variances = (np.array([one[part] for one in self._blocks]) for part in range(2))
         mean, variance = sums.mean(axis=0), variances.sum(axis=0)
         share = mean / np.maximum(mean.sum(axis=(-1, -2), keepdims=True), 1e-300)
-        found = {name: [] for name in GROUPS}
-        certain = unsure.mean(axis=0) <= 0.5
-        for s in range(len(sums)):
-            z = deviations(sums[s], variances[s], mean, variance, len(sums))
-            for name, (low, high) in GROUPS.items():
-                found[name].append(share_within(z, (share >= low) & (share < high) & certain))
-        return found
+        certain = ~uncertain(mean, np.sqrt(variance / len(sums)), self._number)
+        z = [deviations(*each, mean, variance, len(sums)) for each in zip(sums, variances, strict=True)]
+        return {
+            name: share_told(z, certain & (share >= low) & (share < high), expected)
+            for name, (low, high) in GROUPS.items()
+        }
 
 
 def rows_of(stack, estimator, paths, seeds, threads):
