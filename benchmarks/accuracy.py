@@ -22,6 +22,7 @@ ANGLES = (30.0, 60.0, 80.0)
 # Gain over independent paths that must be, and that is aimed at.
 MUST = {"plastic": 250.0, "metal": 500.0, "slab": 2000.0}
 AIM = 10_000.0
+NARROW = ("narrow-metal", "narrow-slab")
 # Fewer are not worth replicates.
 FIRST_RAYS, MOST_TRIALS = 1 << 17, 12
 
@@ -38,6 +39,26 @@ def rays_for(scene, estimator, seconds, threads):
             return max(FIRST_RAYS, int(rays * left / tracing))
         rays *= int(np.clip(0.5 * left / max(tracing, 1e-9), 2, 16))
     return rays
+
+
+def sized(cells, directions):
+    """Projected solid angles of cells in some directions, 0 of those that are not valid; shape (M, 1, R, K)."""
+    return np.where(cells.valid, cells.projected_solid_angle, 0.0)[directions, None]
+
+
+def squares(slices):
+    """Squared deviation of each seed from their mean, shape (seeds, angles), without bias.
+
+    Parameters
+    ----------
+    slices : ndarray, shape (seeds, angles, channels, rows, columns)
+        BSDF values times the root of the projected solid angle.
+    """
+    away = ((slices - slices.mean(axis=0)) ** 2).sum(axis=(-1, -2))
+    # The mean over the channels is one of norms: each channel counts with its share of it.
+    root = np.sqrt(away.mean(axis=0))
+    share = root.mean(axis=-1, keepdims=True) / np.maximum(root, 1e-300)
+    return (away * share).mean(axis=-1) * len(slices) / (len(slices) - 1.0)
 
 
 class Scatter:
@@ -60,8 +81,8 @@ class Scatter:
 
     def add(self, found):
         """Take in a `goniosim.report.cost.runs.Run`."""
-        component, cells = found.result.components[self._component], found.result.cells
-        size = np.where(cells.valid, cells.projected_solid_angle, 0.0)[self._places, None]
+        component = found.result.components[self._component]
+        size = sized(found.result.cells, self._places)
         self._slices.append(component.bsdf[self._places] * np.sqrt(size))
         self._stated.append(found.noise[self._component][self._places] ** 2)
         cpu = found.cpu_seconds + found.cpu_overhead / len(found.cpu_seconds)
@@ -69,13 +90,8 @@ class Scatter:
         self.used = [found.estimators[self._component][place] for place in self._places]
 
     def squares(self):
-        """Squared deviation of each seed from their mean, shape (seeds, angles), without bias."""
-        slices = np.stack(self._slices)
-        away = ((slices - slices.mean(axis=0)) ** 2).sum(axis=(-1, -2))
-        # The mean over the channels is one of norms: each channel counts with its share of it.
-        root = np.sqrt(away.mean(axis=0))
-        share = root.mean(axis=-1, keepdims=True) / np.maximum(root, 1e-300)
-        return (away * share).mean(axis=-1) * len(slices) / (len(slices) - 1.0)
+        """As the function of that name, of what was added."""
+        return squares(np.stack(self._slices))
 
     @property
     def error(self):
@@ -132,7 +148,7 @@ def main(arguments=None):
     parser.add_argument("--seconds", type=float, default=1.0, help="CPU seconds per slice")
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--stacks", nargs="+", choices=known, default=[*MUST, *(set(known) - set(MUST))])
+    parser.add_argument("--stacks", nargs="+", choices=known, default=[*MUST, *NARROW])
     options = parser.parse_args(arguments)
     print(f"{'stack':14}{'theta':>6}{'by':>12}{'error':>10}{'stated':>9}{'CPU s':>8}", end="")
     print(f"{'analog':>10}{'stated':>9}{'CPU s':>8}{'FOM ratio':>12}{'±':>6}{'must':>7}")

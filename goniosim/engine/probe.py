@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cores import granted_threads
+from .blas import one_thread
 from .estimators import ESTIMATORS
 from .estimators.choose import ANALOG, choose
 from .faint import faint_weights
 from .gain import expected
 from .layout import LOST_CAP
 from .memory import threads_of
-from .plan import Plan, make_plan
+from .plan import make_plan
 from .rounds import FEWEST_PATHS
 from .trial import try_replicates
 from .unit import Tally, Workspace, unit_key
@@ -24,19 +25,30 @@ _RAYS_PER_UNIT = 1 << 13
 _MOST_EVENTS = 1 << 18
 
 
+# Interfaces that catch light between them, so that the limit on the number of events may cut some of it off. Light
+# that has entered through the first of two finds its way out again.
+_FEWEST_TO_TRAP = 3
+
+
 def warm_up(scene):
-    """Compile the kernels, or load them from the cache; returns the seconds it took.
+    """Compile the kernels of a simulation, or load them from the cache; returns the seconds it took.
 
     Parameters
     ----------
-    scene : goniosim.scene.Scene or Plan
-        Of a plan, only those of the analog walk.
+    scene : goniosim.scene.Scene
     """
+    plan = make_plan(scene)
+    choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
+    # Where no slices are by independent paths, the energy balance is.
+    return _warm_up(plan, choices, walks=True)
+
+
+def _warm_up(plan, choices, walks):
     start = time.perf_counter()
-    plan = scene if isinstance(scene, Plan) else make_plan(scene)
-    Workspace(plan).run(0, 1, unit_key(0, 0, 0), Tally(plan), threading.Event())
-    if plan is not scene:
-        for choice in choose(plan, getattr(scene.simulation, "estimator", "auto"), scene.simulation.rays):
+    if walks:
+        Workspace(plan).run(0, 1, unit_key(0, 0, 0), Tally(plan), threading.Event())
+    with one_thread():
+        for choice in choices:
             _warm_up_replicates(plan, choice)
     return time.perf_counter() - start
 
@@ -57,10 +69,11 @@ def _warm_up_replicates(plan, choice):
     if choice.estimator not in ESTIMATORS or kind in _warm:
         return
     _warm.add(kind)
-    estimator = ESTIMATORS[choice.estimator](plan, choice.sides)
+    estimator = ESTIMATORS[choice.estimator].tiny(plan, choice.sides)
     estimator.prepare()
-    slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
-    out = np.empty((1, slots, plan.n_distinct, plan.rows, plan.width))
+    few = estimator.plan
+    slots = sum(int(few.slots[side, 1]) for side in choice.sides)
+    out = np.empty((1, slots, few.n_distinct, few.rows, few.width))
     estimator.workspace().run(0, 2, np.zeros(1, np.uint64), out, threading.Event())
 
 
@@ -75,14 +88,14 @@ class Probe:
     events_per_ray : float
         Mean number of interfaces a ray meets, or what costs as much.
     compile_seconds : float
-        Time to compile the kernels or to load them from the cache.
+        Time to compile the kernels of the trial, or to load them from the cache.
     rays : int
-        Rays traced, all directions together.
+        Independent rays traced, all directions together; 0 where nothing depends on them.
     lost_event_cap : float
         Share of the flux that was lost at the event cap, the largest of all directions and channels.
     gains : dict of str to float
         By component, how many times the processor time independent paths would take for the same noise; without
-        those of independent paths, and where the probe saw nothing.
+        those of independent paths, and where the probe saw nothing. Empty if they were not asked for.
     """
 
     rays_per_second: float
@@ -93,11 +106,39 @@ class Probe:
     gains: dict
 
 
-def probe(scene, seconds=1.0):
-    """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`."""
+def probe(scene, seconds=1.0, gains=False):
+    """Trace the scene for about ``seconds``, all directions in turn, and measure; see `Probe`.
+
+    The independent paths of the energy balance are few: nothing is tried of them but whether they are caught, unless
+    the ``gains`` over them are asked for.
+    """
     plan = make_plan(scene)
     threads = granted_threads(threads_of(scene))
-    compile_seconds = warm_up(scene)
+    choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
+    replicated = [choice for choice in choices if choice.estimator != ANALOG]
+    walks = gains or len(replicated) < len(choices) or len(plan.kinds) >= _FEWEST_TO_TRAP
+    compile_seconds = _warm_up(plan, choices, walks)
+    rays, events, lost, elapsed, histogram = (0, 0, 0.0, 0.0, None)
+    if walks:
+        rays, events, lost, elapsed, histogram = _walk(scene, plan, threads, seconds)
+    found = {}
+    if replicated:
+        directions, asked = len(plan.theta_deg), scene.simulation.most_rays
+        tried = [try_replicates(plan, choice) for choice in replicated]
+        whole = sum(each.shared + each.seconds(asked) / threads for each in tried)
+        if len(replicated) < len(choices):
+            whole += directions * asked * elapsed / rays
+        rate, events_per_ray = directions * asked / whole, sum(each.events_per_path for each in tried)
+        if gains:
+            few = scene.simulation.rays or FEWEST_PATHS
+            found = expected(plan, tried, histogram, rays, threads * elapsed / rays, few)
+    else:
+        rate, events_per_ray = rays / elapsed, events / rays
+    return Probe(rate, events_per_ray, compile_seconds, rays, lost, found)
+
+
+def _walk(scene, plan, threads, seconds):
+    """Independent paths: rays, events, largest share lost at the event cap, seconds, and the histogram."""
     directions = len(plan.theta_deg)
     faint = faint_weights(plan)
     unit_rays = max(1, min(_RAYS_PER_UNIT, _MOST_EVENTS // len(plan.kinds)))
@@ -125,22 +166,5 @@ def probe(scene, seconds=1.0):
         totals = list(pool.map(work, range(threads)))
     elapsed = time.perf_counter() - start
     rays, events, lost = (sum(total[i] for total in totals) for i in range(3))
-    rate, events_per_ray = rays.sum() / elapsed, events / rays.sum()
-    choices = choose(plan, scene.simulation.estimator, scene.simulation.rays)
-    tried = [try_replicates(plan, each) for each in choices if each.estimator != ANALOG]
     histogram = sum(tally.histogram for _, tally in spaces)
-    gains = expected(plan, tried, histogram, int(rays.sum()), threads / rate, scene.simulation.rays or FEWEST_PATHS)
-    if tried:
-        asked = scene.simulation.most_rays
-        whole = sum(each.shared + each.seconds(asked) / threads for each in tried)
-        if len(tried) < len(choices):
-            whole += directions * asked / rate
-        rate, events_per_ray = directions * asked / whole, sum(each.events_per_path for each in tried)
-    return Probe(
-        rays_per_second=rate,
-        events_per_ray=events_per_ray,
-        compile_seconds=compile_seconds,
-        rays=int(rays.sum()),
-        lost_event_cap=float((lost / np.maximum(rays, 1)[:, None]).max()),
-        gains=gains,
-    )
+    return int(rays.sum()), events, float((lost / np.maximum(rays, 1)[:, None]).max()), elapsed, histogram

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .blas import one_thread
 from .estimate import noise
 from .estimators import ESTIMATORS
 from .replicates import unfold
@@ -72,9 +73,15 @@ def try_replicates(plan, choice):
     Trial
     """
     estimator = ESTIMATORS[choice.estimator](plan, choice.sides)
-    start = time.perf_counter()
-    estimator.prepare()
-    shared = time.perf_counter() - start
+    with one_thread():
+        start = time.perf_counter()
+        estimator.prepare()
+        shared = time.perf_counter() - start
+        return _trial(plan, choice, estimator, shared)
+
+
+def _trial(plan, choice, estimator, shared):
+    """Replicates of two sizes."""
     workspace = estimator.workspace()
     slots = sum(int(plan.slots[side, 1]) for side in choice.sides)
     out = np.empty((estimator.chunk, slots, plan.n_distinct, plan.rows, plan.width))

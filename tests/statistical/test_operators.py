@@ -33,7 +33,7 @@ def operator_of(case, theta=40.0, rows=9, columns=36, orders=None, fine=FINE):
     layers, side, parametrization = CASES[case]
     simulation = {"orders": orders} if orders else {}
     scene = make_scene(layers, theta, parametrization, rows, columns, **simulation)
-    made = Operator(make_plan(scene), (side,), fine)
+    made = Operator(make_plan(scene), (side,), 90 * fine)
     made.prepare()
     return scene, made
 
@@ -137,7 +137,7 @@ def test_memory_is_told_from_shapes():
 def test_lambertian_base_under_a_wide_top():
     """Total against the analog engine within 4.5 sigma, false alarm 7e-6."""
     scene = make_scene([dielectric(1.5, 0.3), lambert(0.6)], 70.0, rows=9, columns=36)
-    made = Operator(make_plan(scene), (UP,), FINE)
+    made = Operator(make_plan(scene), (UP,), 90 * FINE)
     made.prepare()
     component = simulate(scene, rays=400_000, seed=5, estimator="analog").components["reflection/internal"]
     _, totals = deviations(made, [component], energies(made, 1024, 32, seed=3), 400_000)

@@ -40,8 +40,19 @@ def assert_same_bits(one, other):
 def test_threads(thetas, rays):
     """One direction of several work units, and several directions, on 1, 2 and 3 threads."""
     scene = make_scene(ROUGH, thetas, rows=45, columns=90, orders=2)
-    one, two, three = (simulate(scene, rays=rays, seed=8, threads=threads) for threads in (1, 2, 3))
+    one, two, three = (simulate(scene, rays=rays, seed=8, threads=n, estimator="analog") for n in (1, 2, 3))
     assert_same_bits(one, two)
+    assert_same_bits(one, three)
+
+
+@pytest.mark.parametrize("tau", [0.1, pytest.param([0.05, 0.1, 0.4], marks=pytest.mark.slow)])
+def test_threads_of_replicates(tau):
+    """Two rounds of an operator and of a split walk, on 1 and 3 threads."""
+    layers = [dielectric(1.5, 0.2), medium(tau), dielectric(1.0, 0.001)]
+    scene = make_scene(layers, [45], rows=9, columns=36)
+    one, three = (simulate(scene, rays=400_000, seed=8, threads=threads) for threads in (1, 3))
+    assert one.components["reflection/internal"].estimator == ["operator"]
+    assert len(one.cost.rays[0]) > 1
     assert_same_bits(one, three)
 
 

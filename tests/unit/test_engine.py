@@ -1,16 +1,20 @@
 """The driver: schedule, stopping, resuming, overrides, and what a scene does not call for."""
 
+import sys
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from goniosim.compare.measures import measure, rmse
-from goniosim.engine import probe, simulate, warm_up
+from goniosim.engine import blas, probe, simulate, warm_up
 from goniosim.engine import unit as unit_module
+from goniosim.engine.estimators import ESTIMATORS
 from goniosim.engine.plan import make_plan
 from goniosim.engine.schedule import LARGEST_UNIT, Schedule
 from goniosim.errors import ConfigError, StoppedError
+from plain import Plain
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 PLASTIC = [dielectric(1.5, 0.2), medium([0.05, 0.1, 0.8]), lambert([0.1, 0.6, 0.1])]
@@ -115,6 +119,35 @@ def test_probe_measures():
     found = probe(scene, seconds=0.2)
     assert found.rays_per_second > 1e4
     assert 1.0 < found.events_per_ray < 20.0
+
+
+@pytest.mark.parametrize(("coats", "walks"), [([1.5], False), ([1.5, 1.3], True)])
+def test_a_probe_traces_independent_paths_only_where_they_tell_something(monkeypatch, coats, walks):
+    """Where replicates make all slices and nothing catches light, the analog walk is not even compiled."""
+    module, inside, asked = sys.modules["goniosim.engine.probe"], [], []
+
+    class Watched(Plain):
+        tiny = classmethod(lambda cls, plan, sides: cls(plan, sides))
+
+        def prepare(self):
+            inside.append(blas._users)
+
+        def workspace(self):
+            asked.append(self)
+            return super().workspace()
+
+    monkeypatch.setitem(ESTIMATORS, "operator", Watched)
+    monkeypatch.setattr(module, "_warm", set())
+    monkeypatch.setattr(module, "_walk", lambda *given: asked.append("walk") or (10, 20, 0.5, 1.0))
+    monkeypatch.setattr(module, "Tally", lambda plan: asked.append("compiled"))
+    monkeypatch.setattr(module, "Workspace", lambda plan: SimpleNamespace(run=lambda *given: None))
+    metal = [*(dielectric(eta, 0.2) for eta in coats), conductor(1.45, 1.0, 0.2)]
+    found = probe(make_scene(metal, [0.0], rows=3, columns=4, rays=1 << 17, estimator="operator"), seconds=0.0)
+    assert [each for each in asked if isinstance(each, str)] == (["compiled", "walk"] if walks else [])
+    assert (found.rays, found.lost_event_cap) == ((10, 0.5) if walks else (0, 0.0))
+    assert found.rays_per_second > 0.0 and found.events_per_ray > 1.0
+    # Products of matrices have no threads of their own here.
+    assert len(inside) == 2 and min(inside) == 1 and blas._users == 0
 
 
 def test_only_distinct_channels_are_traced():

@@ -287,3 +287,14 @@ def test_the_variant_follows_from_widths(layers, side, expected):
 def test_one_operator_serves_one_way_out():
     plan = make_plan(make_scene([WIDE, AIR[1]], 30.0))
     assert "one way" in Operator.refusal(plan, (UP, DOWN))
+
+
+@pytest.mark.parametrize(("layers", "side", "variant"), [CHOICES[0], CHOICES[3]], ids=["cells", "nodes"])
+def test_the_smallest_operator_runs_the_same_kernels(layers, side, variant):
+    """What is compiled ahead serves all sizes: numbers of rows that blocks do not divide, and a single block."""
+    plan = make_plan(make_scene(layers, [40.0, 60.0], rows=15, columns=60))
+    few = Operator.tiny(plan, (side,))
+    assert few.application.sums_cells == Operator(plan, (side,)).application.sums_cells == (variant[1] == "out")
+    for made in (few, Operator(plan, (side,), nodes=30)):
+        made.prepare()
+    assert len(kernels.tabulate.signatures) == 1

@@ -16,6 +16,8 @@ Every estimator is a class of ways out with
     Whether it interpolates between nodes; ``run`` then takes ``stride=2`` to use every second one.
 ``refusal(plan, sides)``
     One sentence why it does not apply to these ways out, or None.
+``tiny(plan, sides)``
+    One that runs the same kernels for as little as they can do: they are compiled with it.
 ``prepare()``
     Makes what all incident directions share, before anything is run.
 ``memory``

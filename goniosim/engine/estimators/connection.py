@@ -15,6 +15,7 @@ which a lattice knows well.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -56,6 +57,11 @@ class Connection:
         if sides == (UP,) and kinds in ((ROUGH_DIELECTRIC, LAMBERT), (SMOOTH_DIELECTRIC, LAMBERT)):
             return None
         return "it connects the base to the cells, which takes a single dielectric interface over a Lambertian base"
+
+    @classmethod
+    def tiny(cls, plan, sides):
+        """One that runs the same kernels."""
+        return cls(replace(plan, theta_deg=plan.theta_deg[:1], light=plan.light[:1], rows=2, columns=4), sides)
 
     def __init__(self, plan, sides):
         self.plan = plan

@@ -5,10 +5,11 @@ which `Operator.coarse_minus_fine` bounds.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from ..operators import rays
+from ..operators import cells, rays
 from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals
 from ..operators.choice import IN, choose, inner_index
@@ -17,6 +18,8 @@ from ..operators.gather import POINTS, POINTS_OF_EXIT, gather
 from ..operators.stencils import padded
 from ..unit import BATCH
 
+# Nodes half a degree apart.
+NODES = 180
 # Events of the walk between two looks at `stop`: some tens of milliseconds.
 BUDGET = 1 << 20
 # An event here, and a look at the radiance, take as long as so many events of the analog walk; one of those as long as
@@ -33,8 +36,8 @@ class Operator:
     plan : goniosim.engine.plan.Plan
     sides : tuple of int
         One way out, see `refusal`.
-    fine : int
-        Nodes per degree.
+    nodes : int
+        From the pole to grazing angles.
     """
 
     name = "operator"
@@ -50,10 +53,17 @@ class Operator:
         found = choose(plan, sides[0])
         return found if isinstance(found, str) else None
 
-    def __init__(self, plan, sides, fine=2):
+    @classmethod
+    def tiny(cls, plan, sides):
+        """One that runs the same kernels."""
+        columns = 8 if cells.fits(plan, NODES) else 3
+        few = replace(plan, theta_deg=plan.theta_deg[:1], light=plan.light[:1], rows=2, columns=columns)
+        return cls(few, sides, nodes=4)
+
+    def __init__(self, plan, sides, nodes=NODES):
         (side,) = sides
         self.plan = plan
-        self.nodes = 90 * fine
+        self.nodes = nodes
         self.variant = choose(plan, side)
         self.slots = int(plan.slots[side, 1])
         self.ahead = order_ahead(plan, self.variant, side)

@@ -1,6 +1,7 @@
 """The split walk as an estimator: it serves every stack, and is what is left where nothing faster applies."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -39,6 +40,11 @@ class Split:
     def refusal(plan, sides):
         """It applies to everything: None."""
         return None
+
+    @classmethod
+    def tiny(cls, plan, sides):
+        """One that runs the same kernels."""
+        return cls(replace(plan, theta_deg=plan.theta_deg[:1], light=plan.light[:1], rows=2, columns=4), sides)
 
     def __init__(self, plan, sides):
         self.plan = plan

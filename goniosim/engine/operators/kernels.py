@@ -37,10 +37,12 @@ def coefficients(event, alpha, eta, kappa, rows, matrix, found):
     """
     nodes = found.shape[2] - 1
     matrix = matrix * end_weights(2 * nodes)
-    table = np.empty((2 * nodes + 1, rows.nodes_of(BLOCK), nodes + 1))
+    table = np.empty((2 * nodes + 1) * rows.nodes_of(BLOCK) * (nodes + 1))
     for first in range(0, len(rows), BLOCK):
         count = min(BLOCK, len(rows) - first)
-        some = table[:, : rows.nodes_of(count)]
+        shape = (2 * nodes + 1, rows.nodes_of(count), nodes + 1)
+        # Contiguous, the last and smaller one too: the kernel is compiled once.
+        some = table[: math.prod(shape)].reshape(shape)
         tabulate(event, alpha, eta, kappa, rows.first_node(first), some)
         block = rows.combine(first, some)
         answer = np.empty((len(block), count * (nodes + 1)))
