@@ -17,6 +17,7 @@ _STEP_V = 0.5698402909980532
 # The tail: share of a distribution, and share of the facets that are drawn from it.
 _TAIL = 0.01
 _DRAWN = 0.03
+_LEAST = 1e-4
 
 
 @stage
@@ -70,8 +71,9 @@ def far_facet(u):
     The share of facets beyond a slope s falls with s^(-2/3) instead of s^-2. Such ratios are kept apart from a ray's
     weights: roulette, if it saw the product, would end the very rays that were drawn for the tails.
     """
-    t = (u - (1.0 - _DRAWN)) * (1.0 / _DRAWN)
-    far = t >= 0.0
+    # Nowhere so small that the facet would be no facet.
+    t = max((1.0 - u) * (1.0 / _DRAWN), _LEAST)
+    far = t < 1.0
     height = 1.0 - _TAIL * (t * t * t) if far else u * ((1.0 - _TAIL) / (1.0 - _DRAWN))
     return height, (3.0 * _TAIL / _DRAWN) * (t * t) if far else (1.0 - _TAIL) / (1.0 - _DRAWN)
 
