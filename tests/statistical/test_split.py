@@ -85,9 +85,10 @@ def test_fine_blocks_agree_with_pooled_analog_runs(name):
     layers, theta, parametrization = (STACKS | NARROW)[name]
     scene = make_scene(layers, theta, parametrization, rays=4_000_000)
     plan, split = prepared(Split, scene)
-    found = make_replicates(plan, split, 16_384, seed=2)
+    # Many of both: a bias would hide behind their noise.
+    found = make_replicates(plan, split, 16_384, seed=2, count=128)
     for number, side in enumerate(sides_of(plan)):
-        mean, variance = analog_blocks(scene, plan, side, 6, 12, runs=4)
+        mean, variance = analog_blocks(scene, plan, side, 6, 12, runs=16)
         own = blocks(found[:, number], 6, 12)
         bright = mean > 1e-4 * mean.sum(axis=(-1, -2), keepdims=True)
         z = _z(own, mean, variance)[bright]
