@@ -20,9 +20,15 @@ from .policy import debug_option
 )
 @simulation_options
 @set_option
+@click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="Tell also what the estimators gain over independent paths, which are then tried too.",
+)
 @click.option("--json", "as_json", is_flag=True, help="For programs: seconds, bytes and effects as JSON.")
 @debug_option
-def check(config, output, overrides, as_json, **asked):
+def check(config, output, overrides, verbose, as_json, **asked):
     """Validate CONFIG and predict time, file size and memory.
 
     CONFIG is a scene or a study file, or - for the standard input. The time is predicted from a short
@@ -41,7 +47,7 @@ def check(config, output, overrides, as_json, **asked):
     scenes, many = described.scenes, described.study is not None
     if output:
         jobs.require_room(jobs.plan(scenes, output, folder=Path(output) if many else None))
-    made = forecast.forecasts(scenes)
+    made = forecast.forecasts(scenes, gains=verbose)
     if as_json:
         answer = forecast.study_as_dict(described.study, scenes, made) if many else forecast.as_dict(*scenes, *made)
         click.echo(json.dumps(answer, indent=2, allow_nan=False))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..slices import PARAMETRIZATIONS
 from .estimate import Estimate, noise
 from .replicates import Replicates, unfold
 from .rounds import REPLICATES as N_REPLICATES
@@ -52,7 +53,8 @@ class ReplicatedRun:
         self._shape = (plan.n_distinct, plan.rows, plan.width)
         self._views, self._place = _views(plan, self.sides)
         directions = len(plan.theta_deg)
-        self._sums = [Replicates(self._views, self._shape, plan.columns, estimator.mends) for _ in range(directions)]
+        alike = PARAMETRIZATIONS[plan.parametrization_name][1].ALIKE if estimator.mends else None
+        self._sums = [Replicates(self._views, self._shape, plan.columns, alike) for _ in range(directions)]
         self._issued = [0] * directions
         self._first = {}
         self.bias = {}

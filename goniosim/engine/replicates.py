@@ -24,8 +24,8 @@ class Replicates:
         Distinct channels, rows, folded columns.
     columns : int
         Columns of a whole slice.
-    mends : bool
-        Whether the variance of cells with few hits is mended.
+    alike : tuple of int or None
+        Rows and columns to each side by which the variance of cells with few hits is mended; None if it is not.
 
     Attributes
     ----------
@@ -35,11 +35,11 @@ class Replicates:
         Replicates in the finished rounds.
     """
 
-    def __init__(self, views, shape, columns, mends):
+    def __init__(self, views, shape, columns, alike):
         self._views = views
         self._columns = columns
         self._blocks_of = FoldedBlocks(shape[1], columns, shape[2])
-        self._mends = mends
+        self._alike = alike
         slices, sums = (len(views), *shape), (len(views), shape[0])
         self._cells, self._totals, self._batches = _Sum(slices), _Sum(sums), 0.0
         self.paths = self.count = 0
@@ -91,8 +91,8 @@ class Replicates:
         if count >= FEWEST_REPLICATES or (count >= 2 and self.weight == 0.0):
             weight = float(count * self._size)
             variance = self._round.variance_of_mean()
-            if self._mends:
-                variance = mended(self._round.mean, variance)
+            if self._alike is not None:
+                variance = mended(self._round.mean, variance, self._alike)
             self._cells.add(self._round.mean, variance, weight)
             self._totals.add(self._round_totals.mean, self._round_totals.variance_of_mean(), weight)
             self._batches += weight / self.weight * (_as_many(np.stack(self._round_blocks)) - self._batches)

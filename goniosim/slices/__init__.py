@@ -4,8 +4,8 @@ Every parametrization offers, compiled, ``cells_of`` (directions to cell numbers
 ``view_direction`` (row and column coordinate to a direction and the Jacobian), ``horizon_azimuth`` and
 ``horizon_coordinate`` (where the slice ends); and in Python ``directions`` and its inverse ``coordinates``,
 ``tilt``, ``AXIS_JACOBIAN`` and ``projected_row`` (exact solid angles of parts of cells), ``geometry`` (validity and
-solid angles of all cells) and ``RINGS``. A new one is one new file, a line in `PARAMETRIZATIONS`, and a line in each
-compiled chooser below.
+solid angles of all cells), ``RINGS`` and ``ALIKE``. A new one is one new file, a line in `PARAMETRIZATIONS`, and a
+line in each compiled chooser below.
 
 Cells are half-open: an edge belongs to the cell with the higher number, and azimuth 360 degrees to
 column 0. A direction within `SNAP` cell widths below an edge counts as on it, so that rounding

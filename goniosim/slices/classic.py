@@ -12,6 +12,8 @@ from .grid import HALF_PI, cell_number
 AXIS_JACOBIAN = 1.0
 # Whether a row holds the directions of one height, all around the normal.
 RINGS = True
+# Rows and columns to each side of a cell that are lit alike, where there is little light.
+ALIKE = (2, 2)
 
 
 @stage

@@ -32,6 +32,9 @@ _BLOCK = 1 << 16
 
 # Whether a row holds the directions of one height, all around the normal.
 RINGS = False
+# Rows and columns to each side of a cell that are lit alike, where there is little light: it depends on theta_h above
+# all, and so does the size of the cells.
+ALIKE = (0, 12)
 
 
 @stage

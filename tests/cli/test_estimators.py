@@ -82,6 +82,8 @@ def test_check_says_who_serves_what(folder, goniosim, scene, monkeypatch):
     many = json.loads(goniosim("check", path, "--rays", "1e6", "--json")[1])["estimators"]
     assert [line.split(" (")[0] for line in many] == ["reflection/internal: operator", "transmission: operator"]
     _, out, _ = goniosim("check", path, "--rays", "1e6")
+    assert "  gain  " not in out
+    _, out, _ = goniosim("check", path, "--rays", "1e6", "-v")
     assert all(f"  gain        {name}: " in out for name in ("reflection/internal", "transmission"))
 
 

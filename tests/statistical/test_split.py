@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from goniosim.effective import uncertain
 from goniosim.engine.estimate import to_bsdf
 from goniosim.engine.estimators.split import Split
 from goniosim.engine.layout import DOWN, UP
 from goniosim.engine.mending import mended
+from goniosim.engine.rounds import SMALLEST
+from goniosim.slices import PARAMETRIZATIONS
 from reference.replicates import analog_blocks, blocks, make_replicates, prepared, sides_of
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
@@ -77,14 +80,16 @@ NARROW = {
 def test_fine_blocks_agree_with_pooled_analog_runs(name):
     """Blocks of 6 x 12 cells with 1e-4 of the energy: rms z below 1.15 or 4 sigma, none above 5; totals below 4.
 
-    Seeds are fixed; the limits are 4 sigma for the rms of independent blocks.
+    Seeds are fixed; the limits are 4 sigma for the rms of independent blocks. Channels that share paths are not, and
+    scatter more.
     """
     layers, theta, parametrization = (STACKS | NARROW)[name]
     scene = make_scene(layers, theta, parametrization, rays=4_000_000)
     plan, split = prepared(Split, scene)
-    found = make_replicates(plan, split, 16_384, seed=2)
+    # Many of both: a bias would hide behind their noise.
+    found = make_replicates(plan, split, 16_384, seed=2, count=128)
     for number, side in enumerate(sides_of(plan)):
-        mean, variance = analog_blocks(scene, plan, side, 6, 12, runs=4)
+        mean, variance = analog_blocks(scene, plan, side, 6, 12, runs=16)
         own = blocks(found[:, number], 6, 12)
         bright = mean > 1e-4 * mean.sum(axis=(-1, -2), keepdims=True)
         z = _z(own, mean, variance)[bright]
@@ -93,6 +98,9 @@ def test_fine_blocks_agree_with_pooled_analog_runs(name):
         total = _z(own.sum(axis=(-1, -2)), mean.sum(axis=(-1, -2)), variance.sum(axis=(-1, -2)))
         assert np.abs(total).max() < 4
 
+
+# So many that rings, whose rows have one number each, tell the share to half a point.
+SEEDS = 160
 
 HONEST = {
     "plastic": (*STACKS["plastic"], UP),
@@ -113,26 +121,28 @@ HONEST = {
 @pytest.mark.parametrize("size", [2048, 8192])
 @pytest.mark.parametrize("name", HONEST)
 def test_the_scatter_of_seeds_is_what_is_stated(name, size):
-    """40 seeds of 32 replicates: true over stated variance, and the share of |z| < 2 against Student's t of 31.
+    """Seeds of 32 replicates: true over stated variance, and the share of |z| < 2 against Student's t of 31.
 
-    All cells share the paths, so the ratio of variances has an error of sqrt(2 / 39) = .23: within three of
-    them. Shares within 1.5 points in cells above 3 % of the peak, 3 points in blocks down to 1e-5 of the energy.
+    All cells share the paths, so the ratio of variances has an error of sqrt(2 / 159) = .11: within three of
+    them. Shares within 1.5 points in cells above 3 % of the peak and in blocks down to 1e-4 of the energy, 3 points
+    down to 1e-5. A block that says of itself that it is uncertain claims nothing; with replicates no smaller than
+    those of a run they are less than 1 % of those above 1e-4, and 10 % of those above 1e-5.
     """
     layers, theta, parametrization, side = HONEST[name]
     plan, split = prepared(Split, make_scene(layers, theta, parametrization), (side,))
     means, errors, block_means, block_errors = [], [], [], []
-    for seed in range(40):
+    for seed in range(SEEDS):
         found = make_replicates(plan, split, size, seed=100 + seed)[:, 0]
         mean, variance = found.mean(axis=0), found.var(axis=0, ddof=1) / 32
         means.append(mean)
-        errors.append(mended(mean, variance))
+        errors.append(mended(mean, variance, PARAMETRIZATIONS[parametrization][1].ALIKE))
         own = blocks(found, 6, 12)
         block_means.append(own.mean(axis=0))
         block_errors.append(own.var(axis=0, ddof=1) / 32)
     means, errors = np.array(means), np.array(errors)
     weights = to_bsdf(np.ones((plan.rows, plan.columns)), plan.geometry[0])[:, : plan.width]
     ratio = (means.var(axis=0, ddof=1) * weights).sum() / (errors.mean(axis=0) * weights).sum()
-    assert abs(ratio - 1.0) < 3 * np.sqrt(2 / 39)
+    assert abs(ratio - 1.0) < 3 * np.sqrt(2 / (SEEDS - 1))
     expected = stats.t(31).cdf(2) - stats.t(31).cdf(-2)
     truth = means.mean(axis=0)
     values = truth * weights
@@ -141,15 +151,18 @@ def test_the_scatter_of_seeds_is_what_is_stated(name, size):
     block_means, block_errors = np.array(block_means), np.array(block_errors)
     shares = block_means.mean(axis=0)
     shares = shares / shares.sum(axis=(-1, -2), keepdims=True)
+    silent = uncertain(block_means, np.sqrt(block_errors), 32)
     for where, bar in ((shares > 1e-4, 0.015), ((shares > 1e-5) & (shares <= 1e-4), 0.03)):
-        # Channels share paths, and rings share whole rows: what 40 seeds can tell of so many blocks.
-        blind = 2 * np.sqrt(expected * (1.0 - expected) / (40 * max(where.any(axis=(0, 2)).sum(), 1)))
-        assert _share(block_means, block_errors, where) > expected - max(bar, blind if name == "plastic" else 0.0)
+        assert _share(block_means, block_errors, where, silent) > expected - bar
+    if size >= SMALLEST:
+        assert silent[:, shares > 1e-4].mean() < 0.01
+        assert silent[:, shares > 1e-5].mean() < 0.1
 
 
-def _share(means, variances, where):
-    """Share of |z| < 2 against the mean of all seeds, of which each is a part."""
-    if not where.any():
+def _share(means, variances, where, silent=False):
+    """Share of |z| < 2 against the mean of all seeds, of which each is a part, where something is claimed."""
+    claimed = where & ~np.broadcast_to(silent, means.shape)
+    if not claimed.any():
         return 1.0
     deviations = (means - means.mean(axis=0)) * np.sqrt(len(means) / (len(means) - 1.0))
-    return np.mean(np.abs(deviations[:, where]) < 2.0 * np.sqrt(variances[:, where]))
+    return np.mean(np.abs(deviations[claimed]) < 2.0 * np.sqrt(variances[claimed]))

@@ -19,7 +19,7 @@ def replicates(count, seed):
 
 def added(rounds, columns=10):
     """Sums over rounds of (size, replicates)."""
-    sums = Replicates(VIEWS, SHAPE, columns, mends=False)
+    sums = Replicates(VIEWS, SHAPE, columns, alike=None)
     for size, found in rounds:
         for number, slots in enumerate(found):
             sums.add(number, size, slots)
@@ -89,7 +89,7 @@ def test_an_interrupted_round_counts_if_it_is_worth_it():
 
 def test_what_follows_a_gap_does_not_count():
     found = replicates(REPLICATES, 1)
-    sums = Replicates(VIEWS, SHAPE, 10, mends=False)
+    sums = Replicates(VIEWS, SHAPE, 10, alike=None)
     for number in (0, 1, 2, 4, 5):
         sums.add(number, 100, found[number])
     sums.finish_round()

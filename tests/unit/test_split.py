@@ -8,10 +8,28 @@ import pytest
 
 from goniosim.engine import simulate
 from goniosim.engine.estimators.split import Split
-from goniosim.engine.layout import DOWN, UP
-from goniosim.engine.splitting.layout import LEFT
+from goniosim.engine.layout import DOWN, UP, WEIGHT, X, Y, Z
+from goniosim.engine.splitting.deposit import share_out
+from goniosim.engine.splitting.dielectric import go_through, meet_dielectric
+from goniosim.engine.splitting.exits import let_through
+from goniosim.engine.splitting.layout import (
+    AMOUNT,
+    EXIT,
+    FACET_RATIO,
+    FACET_X,
+    FACET_Y,
+    FACET_Z,
+    LEFT,
+    N_SCRATCH,
+    POINT_U,
+    POINT_V,
+    RATIO,
+    THROUGH_X,
+)
 from goniosim.engine.splitting.lobes import MOST_FACETS, facets_per_arrival
+from goniosim.engine.splitting.numbers import facet_numbers, far_facet
 from goniosim.engine.splitting.workspace import CROWD, Workspace
+from goniosim.engine.stages import ROUGH_DIELECTRIC
 from goniosim.engine.unit import BATCH
 from reference.replicates import keys, make_replicates, prepared
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
@@ -166,3 +184,50 @@ def test_no_branching_overflows_a_queue():
         most = max(most, workspace.filled.max())
     assert workspace.state[LEFT] < 4 * BATCH
     assert CROWD * BATCH < most <= workspace.queues.shape[2]
+
+
+def test_facets_drawn_for_the_tails_are_weighed_by_what_they_are_worth():
+    """Means over a regular grid of numbers: those of plain numbers, whether of the body or of the far tail."""
+    drawn = np.array([far_facet(u) for u in (np.arange(20_000) + 0.5) / 20_000]).T
+    height, ratio = drawn
+    assert (np.diff(height) > 0.0).all() and ratio.min() > 0.0
+    assert ratio.mean() == pytest.approx(1.0, rel=1e-6)
+    assert (ratio * height**2).mean() == pytest.approx(1.0 / 3.0, rel=1e-6)
+    assert (ratio * (1.0 - height) ** -0.2).mean() == pytest.approx(1.25, rel=1e-3)
+    for beyond in (1e-3, 1e-5):
+        assert (ratio * (height > 1.0 - beyond)).mean() == pytest.approx(beyond, rel=0.05)
+        # Plain numbers would be as many as the width of the tail.
+        assert (height > 1.0 - beyond).mean() > 10.0 * beyond
+
+
+@pytest.mark.parametrize("eta", [1.5, 1.0 / 1.5])
+def test_facets_that_only_let_through_are_those_that_also_reflect(eta):
+    """Up to rounding, total internal reflection and light that would go to the wrong side included."""
+    n, alpha = 400, 0.3
+    rng = np.random.default_rng(1)
+    z, turn = rng.uniform(0.05, 1.0, n), rng.uniform(0.0, 2.0 * math.pi, n)
+    batch = np.ones((WEIGHT + 3, n))
+    batch[X], batch[Y], batch[Z] = np.sqrt(1.0 - z * z) * np.cos(turn), np.sqrt(1.0 - z * z) * np.sin(turn), z
+    batch[RATIO] = rng.uniform(0.5, 1.5, n)
+    scratch = np.zeros((N_SCRATCH, n))
+    scratch[POINT_U], scratch[POINT_V] = rng.random((2, n))
+    let_through(batch, n, 5, EXIT, alpha, eta, 0.25, scratch)
+    found = scratch[THROUGH_X : AMOUNT + 1].copy()
+    u, v, fx, fy, fz = scratch[[POINT_U, POINT_V, FACET_X, FACET_Y, FACET_Z]]
+    facet_numbers(u, v, n, 5, EXIT, fx, fy, fz, scratch[FACET_RATIO])
+    scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z] = fx, fy, fz
+    meet_dielectric(ROUGH_DIELECTRIC, batch, n, alpha, eta, scratch)
+    go_through(ROUGH_DIELECTRIC, batch, n, alpha, eta, scratch)
+    share_out(batch, n, 0.25, True, scratch)
+    lit = found[-1] > 0.0
+    assert lit.sum() > 0 and (eta > 1.0 or not lit.all())
+    np.testing.assert_allclose(found[-1], scratch[AMOUNT], rtol=1e-11, atol=1e-15)
+    np.testing.assert_allclose(found[:3, lit], scratch[THROUGH_X:AMOUNT, lit], rtol=1e-9, atol=1e-12)
+
+
+def test_the_dimmer_way_out_gets_fewer_facets():
+    """By the root of what is usual there: some 5 % of the light turns back at the bottom of a clear slab."""
+    layers = [dielectric(1.5, 0.001), medium(0.1), dielectric(1.0, 0.001)]
+    _, split = prepared(Split, make_scene(layers, 10.0, "half"))
+    assert split.facets[0, DOWN] == MOST_FACETS
+    assert 0.1 * MOST_FACETS < split.facets[0, UP] < 0.3 * MOST_FACETS

@@ -5,16 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..splitting.layout import PHASES
+from ..splitting.layout import LATER, PHASES
 from ..splitting.lobes import MOST_FACETS, facets_per_arrival
 from ..splitting.usual import usual_weights
 from ..splitting.workspace import Workspace, shapes
 from ..unit import DARKEST
+from ..walk import ABOVE, BELOW
 
 # A ray that is fainter than this, relative to what is usual at its place, plays Russian roulette. Where inner
 # interfaces branch, their dim branches carry what is rare: those are followed further.
 _FAINT = 0.5
 _FAINT_BRANCH = 0.2
+# And so is light that comes by again: it costs few facets.
+_FAINT_LATER = 0.1
 # Facets for each one of the other way out.
 _MOST_BESIDE = 8
 # Bytes of a number.
@@ -66,10 +69,22 @@ class Split:
     def prepare(self):
         """Find out which weights are usual; the pilot's keys are its own."""
         plan = self.plan
-        faint = _FAINT if len(plan.kinds) < 3 else _FAINT_BRANCH
-        shape = (len(plan.theta_deg), PHASES * 2 * len(plan.kinds), plan.n_distinct)
+        queues = 2 * len(plan.kinds)
+        shape = (len(plan.theta_deg), PHASES * queues, plan.n_distinct)
         self.scales = np.full(shape, 1.0 / DARKEST)
-        self.scales = 1.0 / np.maximum(faint * usual_weights(plan, self.workspace()), DARKEST)
+        usual = usual_weights(plan, self.workspace())
+        faint = np.full(PHASES * queues, _FAINT if len(plan.kinds) < 3 else _FAINT_BRANCH)
+        faint[LATER * queues :] = _FAINT_LATER
+        self.scales = 1.0 / np.maximum(faint[:, None] * usual, DARKEST)
+        self._share_facets(usual.max(axis=-1))
+
+    def _share_facets(self, usual):
+        """Fewer facets for the dimmer one of two ways out, by the root of what is usual there, shape (M, queues)."""
+        last = len(self.plan.kinds) - 1
+        up, down = (usual.reshape(len(usual), PHASES, -1)[:, :, q].max(axis=1) for q in (BELOW, 2 * last + ABOVE))
+        asked = np.where(self.facets > 0, np.stack([up, down], axis=1), 0.0)
+        share = np.sqrt(asked / np.maximum(asked.max(axis=1, keepdims=True), DARKEST))
+        self.facets = np.maximum((self.facets * share).astype(np.int64), np.minimum(self.facets, 1))
 
     @property
     def memory(self):

@@ -16,13 +16,15 @@ from .layout import (
     BACK_Z,
     BASE,
     COSINE,
+    FACET_RATIO,
     FACET_X,
     FACET_Y,
     FACET_Z,
     POINT_U,
     POINT_V,
+    RATIO,
 )
-from .numbers import facet_numbers
+from .numbers import facet_numbers, multiply
 
 
 @stage
@@ -36,7 +38,9 @@ def meet_base(kind, batch, n, alpha, spectral, scratch):
             _multiply(batch[WEIGHT + c], n, spectral[RHO, c])
     elif kind == ROUGH_CONDUCTOR:
         fx, fy, fz, cosines = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], scratch[COSINE]
-        facet_numbers(scratch[POINT_U], scratch[POINT_V], n, 0, BASE, fx, fy, fz)
+        ratios = scratch[FACET_RATIO]
+        facet_numbers(scratch[POINT_U], scratch[POINT_V], n, 0, BASE, fx, fy, fz, ratios)
+        multiply(batch[RATIO], n, ratios)
         draw_facets(x, y, z, n, alpha, fx, fy, fz, cosines)
         _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, ox, oy, oz, gain)
         _colour(batch, n, spectral, cosines)

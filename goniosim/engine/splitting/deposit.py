@@ -12,16 +12,17 @@ from ...slices import cells_of
 from ..layout import WEIGHT
 from .layout import (
     AMOUNT,
-    EXIT_X,
-    EXIT_Y,
-    EXIT_Z,
+    FACET_RATIO,
     RADIUS,
+    RATIO,
     THROUGH_GAIN,
     THROUGH_X,
     THROUGH_Y,
     THROUGH_Z,
     TURN,
 )
+from .numbers import multiply
+from .queues import list_alive
 
 # Azimuths of an exit that has forgotten its own: more cost as much as other paths, and tell less.
 AZIMUTHS = 64
@@ -32,12 +33,11 @@ _AZIMUTH_KEY = 2
 
 
 @stage
-def leave(way, batch, n, share, free, key, channels, scratch, sources, cells):
-    """Deposit ``share`` of the refracted rays that leave upwards (way 0) or downwards (1).
+def leave(way, batch, n, free, key, channels, scratch, sources, cells):
+    """Deposit the refracted rays that leave upwards (way 0) or downwards (1), by the shares in ``AMOUNT``.
 
     Parameters
     ----------
-    share : float
     free : bool
         Whether their azimuth is uniform.
     key : uint64
@@ -53,9 +53,11 @@ def leave(way, batch, n, share, free, key, channels, scratch, sources, cells):
         Events that cost as much as the deposits, beyond one for each ray.
     """
     parametrization, rows, columns, light, slots, places, histogram, rings, rows_are_rings, folded = cells
-    x, y, z, amount = scratch[EXIT_X], scratch[EXIT_Y], scratch[EXIT_Z], scratch[AMOUNT]
-    gain = scratch[THROUGH_GAIN]
-    m = _close_up(scratch[THROUGH_X], scratch[THROUGH_Y], scratch[THROUGH_Z], gain, n, share, x, y, z, amount, sources)
+    x, y, z, amount = scratch[THROUGH_X], scratch[THROUGH_Y], scratch[THROUGH_Z], scratch[AMOUNT]
+    m = list_alive(amount, n, sources)
+    if m < n:
+        for row in range(THROUGH_X, AMOUNT + 1):
+            _gather(scratch[row], m, sources)
     ring = free and rows_are_rings
     spin = free and not rows_are_rings
     table = rings if ring else histogram
@@ -74,16 +76,24 @@ def leave(way, batch, n, share, free, key, channels, scratch, sources, cells):
 
 
 @stage
-def _close_up(ox, oy, oz, gain, n, share, x, y, z, amount, sources):
-    m = 0
+def share_out(batch, n, share, rough, scratch):
+    """Shares of the refracted rays of ``n`` rays: of the gain, times the ratios of all densities."""
+    _product(scratch[THROUGH_GAIN], batch[RATIO], n, share, scratch[AMOUNT])
+    if rough:
+        multiply(scratch[AMOUNT], n, scratch[FACET_RATIO])
+
+
+@stage
+def _product(gain, ratio, n, share, amount):
     for i in range(n):
-        x[m] = ox[i]
-        y[m] = oy[i]
-        z[m] = oz[i]
-        amount[m] = gain[i] * share
-        sources[m] = i
-        m += 1 if gain[i] > 0.0 else 0
-    return m
+        amount[i] = gain[i] * ratio[i] * share
+
+
+@stage
+def _gather(row, m, sources):
+    # To a place that is not after its own.
+    for i in range(m):
+        row[i] = row[sources[i]]
 
 
 @stage

@@ -1,7 +1,11 @@
 """Where things lie in the tables of the split walk; batches are those of `goniosim.engine.layout`.
 
-Behind the weights (and the order) a ray carries the number of its path, which is its place in the lattices.
+Behind the weights (and the order) a ray carries the ratio of densities by which its facets were not drawn alike (see
+`numbers.far_facet`), and the number of its path, which is its place in the lattices: rows `RATIO` and `PATH`.
 """
+
+# Rows of a batch, from its end.
+RATIO, PATH = -2, -1
 
 # What a ray has met since it entered, and so which numbers it has drawn: nothing of the last interface; the last
 # interface, and not the top since; both.
@@ -17,11 +21,12 @@ HASHED = -1
 POINT_U, POINT_V = 0, 1  # numbers that each ray has drawn, from which those of all its exits follow
 FACET_X, FACET_Y, FACET_Z, COSINE = 2, 3, 4, 5  # normal of the microfacet, and the cosine at it
 REFLECTANCE, COSINE_BEYOND = 6, 7  # at the microfacet
-THROUGH_X, THROUGH_Y, THROUGH_Z, THROUGH_GAIN = 8, 9, 10, 11  # the refracted ray, as the next interface views it
-BACK_X, BACK_Y, BACK_Z, BACK_GAIN = 12, 13, 14, 15  # the reflected ray
-EXIT_X, EXIT_Y, EXIT_Z, AMOUNT = 16, 17, 18, 19  # what leaves, closed up, and its share of the ray's weights
-RADIUS, TURN = 20, 21  # what azimuths of one exit share
-N_SCRATCH = 22
+FACET_RATIO = 8  # of the density of the microfacet to that it was drawn from
+# The refracted ray, as the next interface views it; if it leaves, what is deposited of the ray's weights.
+THROUGH_X, THROUGH_Y, THROUGH_Z, AMOUNT, THROUGH_GAIN = 9, 10, 11, 12, 13
+BACK_X, BACK_Y, BACK_Z, BACK_GAIN = 14, 15, 16, 17  # the reflected ray
+RADIUS, TURN = 18, 19  # what azimuths of one exit share
+N_SCRATCH = 20
 
 # Entries of the integer state of a replicate.
 LEFT = 0  # paths not yet started

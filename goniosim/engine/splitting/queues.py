@@ -4,6 +4,7 @@ import numpy as np
 
 from ..._jit import stage
 from ..layout import WEIGHT, X, Y, Z
+from .layout import PATH, RATIO
 
 
 @stage
@@ -15,7 +16,10 @@ def launch(batch, n, light, channels, number):
         row = batch[field]
         for i in range(n):
             row[i] = value
-    path = batch[batch.shape[0] - 1]
+    ratio = batch[RATIO]
+    path = batch[PATH]
+    for i in range(n):
+        ratio[i] = 1.0
     for i in range(n):
         path[i] = number + i
 
@@ -33,7 +37,7 @@ def pop(queue, start, batch, n, first):
 @stage
 def close_up(batch, n, factor, places):
     """Keep the rays whose ``factor`` is above zero; returns how many those are."""
-    m = _list_alive(factor, n, places)
+    m = list_alive(factor, n, places)
     if m < n:
         for field in range(batch.shape[0]):
             row = batch[field]
@@ -48,7 +52,7 @@ def push(batch, n, x, y, z, gain, channels, places, queue, start, first):
 
     Weights are multiplied by the gain. Fields before ``first`` do not matter there.
     """
-    m = _list_alive(gain, n, places)
+    m = list_alive(gain, n, places)
     if first <= X:
         _move(x, n, m, places, queue[X][start : start + m])
         _move(y, n, m, places, queue[Y][start : start + m])
@@ -61,7 +65,8 @@ def push(batch, n, x, y, z, gain, channels, places, queue, start, first):
 
 
 @stage
-def _list_alive(factor, n, places):
+def list_alive(factor, n, places):
+    """List the places where ``factor`` is above zero; returns how many those are."""
     m = np.int64(0)
     for i in range(n):
         places[m] = i

@@ -7,8 +7,9 @@ from ..stages import LAMBERT, ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC
 from ..stages.travel import absorb, roulette
 from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
 from .base import meet_base
-from .deposit import leave
+from .deposit import leave, share_out
 from .dielectric import go_through, meet_dielectric, turn_back
+from .exits import let_through
 from .layout import (
     BACK_GAIN,
     BACK_X,
@@ -19,6 +20,7 @@ from .layout import (
     ENTRY,
     EVENTS,
     EXIT,
+    FACET_RATIO,
     FACET_X,
     FACET_Y,
     FACET_Z,
@@ -27,9 +29,11 @@ from .layout import (
     LATER,
     LAUNCHED,
     LEFT,
+    PATH,
     POINT_U,
     POINT_V,
     RADIUS,
+    RATIO,
     ROUNDS,
     STAGES,
     THROUGH_GAIN,
@@ -38,8 +42,11 @@ from .layout import (
     THROUGH_Z,
     TURN,
 )
-from .numbers import facet_numbers, hashed_points, lattice_points
+from .numbers import facet_numbers, hashed_points, lattice_points, multiply
 from .queues import close_up, launch, pop, push
+
+# Light that comes by again is faint: so many times fewer facets, that its deposits are like those of others.
+FEWER_LATER = 8
 
 # Children of the stage's key: 0 and 1 are the points, 2 azimuths, 3 the roulette.
 _COIN_KEY = 4
@@ -78,7 +85,7 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
     last = interfaces - 1
     channels = scales.shape[1]
     most = batch.shape[1]
-    path = batch[batch.shape[0] - 1]
+    path = batch[PATH]
     stop_at = state[EVENTS] + budget
     while state[EVENTS] < stop_at:
         q = fullest(filled)
@@ -119,7 +126,8 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
         way = UP if k == 0 and side == BELOW else DOWN if k == last and side == ABOVE else -1
         free = kinds[last] == LAMBERT and phase != FRESH
         seen = way >= 0 and not opaque and facets[way] > 0
-        m = 1 if free or not seen else facets[way]
+        rough = kinds[k] == ROUGH_DIELECTRIC
+        m = 1 if free or not seen or not rough else max(1, facets[way] // (FEWER_LATER if phase == LATER else 1))
         if dimension == HASHED:
             hashed_points(n, key, scratch[POINT_U], scratch[POINT_V])
         else:
@@ -129,18 +137,24 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
             meet_base(kinds[k], batch, n, alphas[k], spectral[k], scratch)
         else:
             eta = etas[k] if side == ABOVE else 1.0 / etas[k]
-            # The last facet also reflects what goes on inside.
-            for number in range(m):
-                if kinds[k] == ROUGH_DIELECTRIC:
-                    u, v = scratch[POINT_U], scratch[POINT_V]
-                    facet_numbers(u, v, n, number, dimension, scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z])
-                meet_dielectric(kinds[k], batch, n, alphas[k], eta, scratch)
-                if seen or way < 0:
-                    go_through(kinds[k], batch, n, alphas[k], eta, scratch)
-                if seen:
-                    state[EVENTS] += leave(way, batch, n, 1.0 / m, free, key, channels, scratch, places, cells)
+            for number in range(m - 1):
+                let_through(batch, n, number, dimension, alphas[k], eta, 1.0 / m, scratch)
+                leave(way, batch, n, False, key, channels, scratch, places, cells)
             state[EVENTS] += (m - 1) * n
+            # The last facet also reflects what goes on inside.
+            if rough:
+                u, v = scratch[POINT_U], scratch[POINT_V]
+                fx, fy, fz = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z]
+                facet_numbers(u, v, n, m - 1, dimension, fx, fy, fz, scratch[FACET_RATIO])
+            meet_dielectric(kinds[k], batch, n, alphas[k], eta, scratch)
             turn_back(kinds[k], batch, n, alphas[k], scratch)
+            if seen or way < 0:
+                go_through(kinds[k], batch, n, alphas[k], eta, scratch)
+            if seen:
+                share_out(batch, n, 1.0 / m, rough, scratch)
+                state[EVENTS] += leave(way, batch, n, free, key, channels, scratch, places, cells)
+            if rough:
+                multiply(batch[RATIO], n, scratch[FACET_RATIO])
             if way < 0 and crowded and not (k == 0 and side == ABOVE):
                 _toss(scratch[THROUGH_GAIN], scratch[BACK_GAIN], n, derive_key(key, _COIN_KEY))
 

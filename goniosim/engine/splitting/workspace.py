@@ -5,6 +5,7 @@ import numpy as np
 from ...slices import PARAMETRIZATIONS
 from ..lattice import DIMENSIONS
 from ..layout import N_LEDGER, WEIGHT
+from ..sorting import LANES
 from ..unit import BATCH, BUDGET, child_key, queue_capacity
 from .layout import EVENTS, LEFT, N_SCRATCH, N_STATE, PHASES
 from .numbers import lattice_shifts
@@ -20,12 +21,13 @@ _SHIFTS, _PATHS = 0, 1
 def shapes(plan, slots):
     """Shapes of the arrays of float64, by name; ``slots`` is the number of histograms."""
     queues = 2 * len(plan.kinds) * PHASES
-    fields = WEIGHT + plan.n_distinct + (1 if plan.orders else 0) + 1
+    fields = WEIGHT + plan.n_distinct + (1 if plan.orders else 0) + 2
     rings = slots * plan.rows if PARAMETRIZATIONS[plan.parametrization_name][1].RINGS else 1
     return {
         "queues": (queues, fields, queue_capacity(queues) + CROWD * BATCH),
         "batch": (fields, BATCH),
-        "scratch": (N_SCRATCH, BATCH),
+        # Not 512 numbers from row to row: in the nearest cache they would all claim the same few places.
+        "scratch": (N_SCRATCH, BATCH + LANES),
         "histogram": (slots * plan.rows * plan.columns, plan.n_distinct),
         "rings": (rings, plan.n_distinct),
     }

@@ -101,12 +101,14 @@ def _batches(scene, sampled):
     return 8 * BATCHES * 3 * blocks * len(scene.incident.theta_deg) * sampled * (1 + (asked.orders or 0))
 
 
-def forecasts(scenes):
+def forecasts(scenes, gains=False):
     """Probe the speed of every scene for a moment.
 
     Parameters
     ----------
     scenes : list of Scene
+    gains : bool
+        Whether to try independent paths too, and tell what estimators gain over them.
 
     Returns
     -------
@@ -120,7 +122,7 @@ def forecasts(scenes):
         short = shortage(scene)
         # What does not fit here may run elsewhere: its speed is that on slices of the usual size.
         tried = _usual_slices(scene) if short else scene
-        measured = probe(tried, seconds=min(PROBE, PROBE_STUDY / len(scenes)))
+        measured = probe(tried, min(PROBE, PROBE_STUDY / len(scenes)), gains)
         made.append(
             Forecast(
                 name=scene.material.name,
