@@ -36,14 +36,7 @@ def scalar(function):
 
 def stage(function):
     """Compile a function over arrays, to be merged into the kernels that call it."""
-    return njit(
-        forceinline=True,
-        no_cpython_wrapper=True,
-        no_cfunc_wrapper=True,
-        nogil=True,
-        error_model="numpy",
-        fastmath=FASTMATH,
-    )(function)
+    return njit(forceinline=True, nogil=True, error_model="numpy", fastmath=FASTMATH)(function)
 
 
 def kernel(function):
