@@ -138,7 +138,7 @@ def test_a_probe_traces_independent_paths_only_where_they_tell_something(monkeyp
 
     monkeypatch.setitem(ESTIMATORS, "operator", Watched)
     monkeypatch.setattr(module, "_warm", set())
-    monkeypatch.setattr(module, "_walk", lambda *given: asked.append("walk") or (10, 20, 0.5, 1.0))
+    monkeypatch.setattr(module, "_walk", lambda *given: asked.append("walk") or (10, 20, 0.5, 1.0, None))
     monkeypatch.setattr(module, "Tally", lambda plan: asked.append("compiled"))
     monkeypatch.setattr(module, "Workspace", lambda plan: SimpleNamespace(run=lambda *given: None))
     metal = [*(dielectric(eta, 0.2) for eta in coats), conductor(1.45, 1.0, 0.2)]
