@@ -105,7 +105,7 @@ def test_simulate_refuses_what_does_not_fit(folder, goniosim, small_machine):
 
 
 def test_memory_that_runs_out_in_any_command_is_no_bug(folder, goniosim, monkeypatch):
-    def greedy(*_):
+    def greedy(*_, **__):
         raise MemoryError
 
     monkeypatch.setattr("goniosim.report.simulation.forecast.forecasts", greedy)
