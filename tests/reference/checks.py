@@ -46,13 +46,19 @@ def _blocks(cells):
     return cells.reshape(rows // 10, 10, columns // 30, 30).sum(axis=(1, 3))
 
 
-def _energies(scene, side):
-    """Energies [direction, channel, row, column] of a way out; the direct reflection takes an integral of its own."""
+def _estimates(scene, side, seed=None):
+    """What is known of a way out, by direction; the direct reflection takes an integral of its own, and is left out."""
     plan = make_plan(scene)
-    session = Session(plan, scene.simulation, Drive(2, threading.Event(), lambda done, total: None))
+    asked = scene.simulation if seed is None else scene.simulation.model_copy(update={"seed": seed})
+    session = Session(plan, asked, Drive(2, threading.Event(), lambda done, total: None))
     session.run()
     (run,) = (each for each in session.runs if side in each.sides)
-    return np.array([run.estimate(side, m).energy[plan.position] for m in range(len(plan.theta_deg))])
+    return [run.estimate(side, m) for m in range(len(plan.theta_deg))], plan.position
+
+
+def _energies(scene, side):
+    found, position = _estimates(scene, side)
+    return np.array([each.energy[position] for each in found])
 
 
 def plastic_cells(thetas, parametrization, rays, seed, estimator="analog"):
@@ -99,9 +105,15 @@ def direct_cells(top, density, thetas, parametrization, rows=90, columns=360):
 
 def many_seeds(layers, theta, component, parametrization, rays, seeds, rows=30, columns=60):
     """Energy, standard error and hits of one component for many seeds, seeds first."""
-    scene = make_scene(layers, theta, parametrization, rows, columns)
-    found = [simulate(scene, rays=rays, seed=seed, estimator="analog").components[component] for seed in range(seeds)]
-    return tuple(np.array([getattr(c, name)[0] for c in found]) for name in ("energy", "stderr", "hits"))
+    scene = make_scene(layers, theta, parametrization, rows, columns, rays=rays, estimator="analog")
+    side = DOWN if component == "transmission" else UP
+    energy, stderr, hits = [], [], []
+    for seed in range(seeds):
+        (found,), position = _estimates(scene, side, seed)
+        energy.append(found.energy[position])
+        stderr.append(found.stderr[position])
+        hits.append(found.hits)
+    return np.array(energy), np.array(stderr), np.array(hits)
 
 
 def exchange_deviations(layers, component, thetas, rays, seed, rows=90, columns=24):
