@@ -9,12 +9,13 @@ paths do not depend on what waits beside them, but for the coin that takes the p
 from ..._jit import kernel, stage
 from ...optics.random import derive_key
 from ..lattice import DIMENSIONS
+from ..loops import colour, scale, share_out
 from ..stages import LAMBERT, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR
 from ..stages.lambert import RHO
 from ..stages.smooth_conductor import ETA, KAPPA
 from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
 from .bins import clear, deposit
-from .branches import absorb, colour, enter, find_brightest, forget, go_through, scale, share_out, turn_back
+from .branches import absorb, enter, find_brightest, forget, go_through, turn_back
 from .facets import draw, draw_lattice, meet_facets
 from .nodes import stencils
 from .queues import close_up, derive_keys, launch, play, pop, push, toss

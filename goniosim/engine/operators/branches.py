@@ -1,10 +1,10 @@
 """What an interface does to a batch: its losses, and the directions and shares of both ways on."""
 
 from ..._jit import stage
-from ...optics.fresnel import dielectric_transmittance, fresnel_conductor, fresnel_dielectric
+from ...optics.fresnel import dielectric_transmittance, fresnel_dielectric
 from ...optics.ggx import smith_g1
 from ...optics.lambert import cosine_direction
-from ...optics.medium import path_length, transmittance
+from ..loops import attenuations, multiply, path_lengths, reflect
 from .rays import (
     COSINE,
     COSINE_BEYOND,
@@ -28,47 +28,15 @@ from .rays import (
 @stage
 def absorb(batch, n, tau, scratch):
     """Attenuate ``n`` rays that have crossed a medium of optical depths ``tau[channel]``."""
-    _lengths(batch[Z], n, scratch[PATH])
+    path_lengths(batch[Z], n, scratch[PATH])
     known = 0.0
     for c in range(tau.shape[0]):
         if tau[c] > 0.0:
             # Neighbouring channels are often alike, and the exponential is what takes time.
             if tau[c] != known:
-                _fractions(n, tau[c], scratch[PATH], scratch[FRACTION])
+                attenuations(n, tau[c], scratch[PATH], scratch[FRACTION])
                 known = tau[c]
-            _multiply(batch[WEIGHT + c], n, scratch[FRACTION])
-
-
-@stage
-def _lengths(z, n, path):
-    for i in range(n):
-        path[i] = path_length(z[i])
-
-
-@stage
-def _fractions(n, tau, path, fraction):
-    for i in range(n):
-        fraction[i] = transmittance(tau, path[i])
-
-
-@stage
-def _multiply(weight, n, factor):
-    for i in range(n):
-        weight[i] *= factor[i]
-
-
-@stage
-def scale(weight, n, factor):
-    """Multiply a row by a number."""
-    for i in range(n):
-        weight[i] *= factor
-
-
-@stage
-def colour(weight, n, cosines, eta, kappa):
-    """What a conductor reflects."""
-    for i in range(n):
-        weight[i] *= fresnel_conductor(cosines[i], eta, kappa)
+            multiply(batch[WEIGHT + c], n, scratch[FRACTION])
 
 
 @stage
@@ -81,13 +49,6 @@ def find_brightest(batch, n, channels, brightest):
         weight = batch[WEIGHT + c]
         for i in range(n):
             brightest[i] = max(brightest[i], weight[i])
-
-
-@stage
-def share_out(cosines, n, eta, reflectance, beyond):
-    """What a dielectric reflects, and the cosine of the refracted ray."""
-    for i in range(n):
-        reflectance[i], beyond[i] = fresnel_dielectric(cosines[i], eta)
 
 
 @stage
@@ -126,7 +87,7 @@ def _enter(x, z, n, alpha, eta, fx, fy, fz, cosines, ox, oy, oz, gain):
 @stage
 def turn_back(batch, n, alpha, scratch):
     """The reflected rays, and their share."""
-    _reflect(
+    reflect(
         batch[X],
         batch[Y],
         batch[Z],
@@ -142,17 +103,6 @@ def turn_back(batch, n, alpha, scratch):
         scratch[NEXT_Z],
         scratch[GAIN],
     )
-
-
-@stage
-def _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, reflectance, ox, oy, oz, gain):
-    for i in range(n):
-        along = 2.0 * cosines[i]
-        height = along * fz[i] - z[i]
-        ox[i] = x[i] - along * fx[i]
-        oy[i] = y[i] - along * fy[i]
-        oz[i] = height
-        gain[i] = reflectance[i] * smith_g1(height, alpha)
 
 
 @stage

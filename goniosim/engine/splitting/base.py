@@ -1,10 +1,10 @@
 """What an opaque base sends back: directions, and weights that are multiplied by what it reflects."""
 
 from ..._jit import stage
-from ...optics.fresnel import fresnel_conductor
 from ...optics.ggx import smith_g1
 from ...optics.lambert import sample_cosine
 from ..layout import WEIGHT, X, Y, Z
+from ..loops import colour, multiply, scale
 from ..stages import LAMBERT, ROUGH_CONDUCTOR
 from ..stages.lambert import RHO
 from ..stages.smooth_conductor import ETA, KAPPA
@@ -24,7 +24,7 @@ from .layout import (
     POINT_V,
     RATIO,
 )
-from .numbers import facet_numbers, multiply
+from .numbers import facet_numbers
 
 
 @stage
@@ -35,7 +35,7 @@ def meet_base(kind, batch, n, alpha, spectral, scratch):
     if kind == LAMBERT:
         _scatter(n, scratch[POINT_U], scratch[POINT_V], ox, oy, oz, gain)
         for c in range(spectral.shape[1]):
-            _multiply(batch[WEIGHT + c], n, spectral[RHO, c])
+            scale(batch[WEIGHT + c], n, spectral[RHO, c])
     elif kind == ROUGH_CONDUCTOR:
         fx, fy, fz, cosines = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], scratch[COSINE]
         ratios = scratch[FACET_RATIO]
@@ -54,12 +54,6 @@ def _scatter(n, u, v, ox, oy, oz, gain):
     for i in range(n):
         ox[i], oy[i], oz[i] = sample_cosine(u[i], v[i])
         gain[i] = 1.0
-
-
-@stage
-def _multiply(weight, n, factor):
-    for i in range(n):
-        weight[i] *= factor
 
 
 @stage
@@ -85,8 +79,4 @@ def _mirror(x, y, z, n, ox, oy, oz, gain):
 @stage
 def _colour(batch, n, spectral, cosines):
     for c in range(spectral.shape[1]):
-        weight = batch[WEIGHT + c]
-        eta = spectral[ETA, c]
-        kappa = spectral[KAPPA, c]
-        for i in range(n):
-            weight[i] *= fresnel_conductor(cosines[i], eta, kappa)
+        colour(batch[WEIGHT + c], n, cosines, spectral[ETA, c], spectral[KAPPA, c])

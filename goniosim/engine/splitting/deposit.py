@@ -10,6 +10,7 @@ from ...optics.elementary import sincos_turns
 from ...optics.random import derive_key, uniform
 from ...slices import cells_of
 from ..layout import WEIGHT
+from ..loops import multiply
 from .layout import (
     AMOUNT,
     FACET_RATIO,
@@ -21,7 +22,6 @@ from .layout import (
     THROUGH_Z,
     TURN,
 )
-from .numbers import multiply
 from .queues import list_alive
 
 # Azimuths of an exit that has forgotten its own: more cost as much as other paths, and tell less.

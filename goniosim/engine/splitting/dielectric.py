@@ -1,9 +1,9 @@
 """Both ways on from a dielectric interface: each loop gives a direction and the share of the flux that goes there."""
 
 from ..._jit import stage
-from ...optics.fresnel import fresnel_dielectric
 from ...optics.ggx import smith_g1
 from ..layout import X, Y, Z
+from ..loops import reflect, share_out
 from ..stages import ROUGH_DIELECTRIC
 from .facets import draw_facets
 from .layout import (
@@ -32,15 +32,9 @@ def meet_dielectric(kind, batch, n, alpha, eta, scratch):
         draw_facets(
             batch[X], batch[Y], batch[Z], n, alpha, scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], cosines
         )
-        _fresnel(cosines, n, eta, scratch[REFLECTANCE], scratch[COSINE_BEYOND])
+        share_out(cosines, n, eta, scratch[REFLECTANCE], scratch[COSINE_BEYOND])
     else:
-        _fresnel(batch[Z], n, eta, scratch[REFLECTANCE], scratch[COSINE_BEYOND])
-
-
-@stage
-def _fresnel(cosines, n, eta, reflectance, beyond):
-    for i in range(n):
-        reflectance[i], beyond[i] = fresnel_dielectric(cosines[i], eta)
+        share_out(batch[Z], n, eta, scratch[REFLECTANCE], scratch[COSINE_BEYOND])
 
 
 @stage
@@ -64,7 +58,7 @@ def turn_back(kind, batch, n, alpha, scratch):
     ox, oy, oz, gain = scratch[BACK_X], scratch[BACK_Y], scratch[BACK_Z], scratch[BACK_GAIN]
     if kind == ROUGH_DIELECTRIC:
         fx, fy, fz, cosines = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], scratch[COSINE]
-        _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, reflectance, ox, oy, oz, gain)
+        reflect(x, y, z, n, alpha, fx, fy, fz, cosines, reflectance, ox, oy, oz, gain)
     else:
         _reflect_smooth(x, y, z, n, reflectance, ox, oy, oz, gain)
 
@@ -79,17 +73,6 @@ def _refract(x, y, z, n, alpha, eta, fx, fy, fz, cosines, reflectance, beyond, o
         oy[i] = inverse_eta * y[i] - along_facet * fy[i]
         oz[i] = height
         gain[i] = (1.0 - reflectance[i]) * smith_g1(height, alpha)
-
-
-@stage
-def _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, reflectance, ox, oy, oz, gain):
-    for i in range(n):
-        twice = 2.0 * cosines[i]
-        height = twice * fz[i] - z[i]
-        ox[i] = x[i] - twice * fx[i]
-        oy[i] = y[i] - twice * fy[i]
-        oz[i] = height
-        gain[i] = reflectance[i] * smith_g1(height, alpha)
 
 
 @stage

@@ -33,13 +33,6 @@ def lattice_points(path, n, facets, dimension, shifts, u, v):
 
 
 @stage
-def multiply(values, n, factors):
-    """Multiply ``n`` values by factors."""
-    for i in range(n):
-        values[i] *= factors[i]
-
-
-@stage
 def hashed_points(n, key, u, v):
     """Independent points."""
     u_key = derive_key(key, 0)

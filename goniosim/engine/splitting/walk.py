@@ -3,6 +3,7 @@
 from ..._jit import kernel, stage
 from ...optics.random import derive_key, uniform
 from ..layout import DOWN, UP, WEIGHT, X, Z
+from ..loops import multiply
 from ..stages import LAMBERT, ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC
 from ..stages.travel import absorb, roulette
 from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
@@ -42,7 +43,7 @@ from .layout import (
     THROUGH_Z,
     TURN,
 )
-from .numbers import facet_numbers, hashed_points, lattice_points, multiply
+from .numbers import facet_numbers, hashed_points, lattice_points
 from .queues import close_up, launch, pop, push
 
 # Light that comes by again is faint: so many times fewer facets, that its deposits are like those of others.

@@ -1,9 +1,9 @@
 """What happens to rays between two interfaces: absorption, and Russian roulette on faint rays."""
 
 from ..._jit import stage
-from ...optics.medium import path_length, transmittance
 from ...optics.random import derive_key, uniform
 from ..layout import ABSORBED_MEDIA, LOST_ROULETTE, WEIGHT, Z
+from ..loops import attenuations, path_lengths
 
 # Which child of the stage's key decides the roulette.
 ROULETTE = 3
@@ -16,27 +16,15 @@ def absorb(batch, n, tau, path, fraction, ledger):
     ``path`` and ``fraction`` are overwritten: the lengths of the ways, in units of the layer's depth, and
     what was left of the last channel that was attenuated.
     """
-    _path_lengths(batch[Z], n, path)
+    path_lengths(batch[Z], n, path)
     known = 0.0
     for c in range(tau.shape[0]):
         if tau[c] > 0.0:
             # Neighbouring channels are often alike, and the exponential is what takes time.
             if tau[c] != known:
-                _attenuations(n, tau[c], path, fraction)
+                attenuations(n, tau[c], path, fraction)
                 known = tau[c]
             ledger[ABSORBED_MEDIA, c] += _rescale(batch[WEIGHT + c], n, fraction)
-
-
-@stage
-def _path_lengths(cosines, n, path):
-    for i in range(n):
-        path[i] = path_length(cosines[i])
-
-
-@stage
-def _attenuations(n, tau, path, fraction):
-    for i in range(n):
-        fraction[i] = transmittance(tau, path[i])
 
 
 @stage
