@@ -9,15 +9,15 @@ the standard error s of that mean,
 and is one of each channel: a cell that a hundred paths hit may hold what a single one left of a strongly absorbed
 channel.
 
-A mean of fewer than ten is uncertain. Ten paths of equal weight tell their standard error to 16 %, and the truth lies
-within two of them in 92 % of the cases, in 87 % with five and in 95 % with sixteen (Poisson). With unequal weights the
-same effective number says less: with exponential ones, 91 %.
+A mean of fewer than sixteen is uncertain. Sixteen paths of equal weight tell their standard error to 12 %, and the
+truth lies within two of them in 95 % of the cases; in 92 % with ten, and in 87 % with five (Poisson). With unequal
+weights the same effective number says less: with exponential ones, 91 % with ten.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-FEWEST = 10.0
+FEWEST = 16.0
 
 
 def effective_count(mean: ArrayLike, stderr: ArrayLike, n: ArrayLike) -> np.ndarray:

@@ -36,6 +36,8 @@ class AnalogRun:
     name = "analog"
     # Its rays are followed to their ends, so that it tells where all energy went.
     audits = True
+    # Pieces that wait for their turn, for each thread: its pieces are alike.
+    waiting = 1
 
     def __init__(self, plan, key, sides=()):
         directions = len(plan.theta_deg)

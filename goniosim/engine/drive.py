@@ -6,9 +6,7 @@ import time
 from collections import deque
 
 from .ordered import in_order
-
-# Pieces of work that wait for their turn to be added up, besides those at work.
-WAITING = 2
+from .runs import in_flight
 
 
 class Drive:
@@ -56,7 +54,7 @@ class Drive:
         """
         stop = stop or self._stop
         local = threading.local()
-        buffers = [run.buffer() for _ in range(min(self._threads + WAITING, len(works)))]
+        buffers = [run.buffer() for _ in range(in_flight(run.waiting, self._threads, len(works)))]
 
         def work(one, buffer):
             if stop.is_set():

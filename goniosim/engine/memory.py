@@ -10,11 +10,14 @@ from ..cores import available_cores
 from ..errors import ResourceError
 from ..free_memory import free_memory, resident_memory
 from ..sums import BATCHES, BLOCKS
-from .drive import WAITING
+from .analog import AnalogRun
 from .estimators import ESTIMATORS
 from .estimators.choose import ANALOG, choose
 from .layout import DOWN, N_LEDGER, N_SCRATCH, UP, WEIGHT
 from .plan import make_plan
+from .replicated import ReplicatedRun
+from .rounds import chunks
+from .runs import in_flight
 from .schedule import AUDIT_RAYS, MOST_LEDGERS, Schedule
 from .sorting import LANES
 from .tally import record_length
@@ -155,7 +158,7 @@ def _of_walk(plan, rays, threads):
     ledgers = min(PARTS * schedule.rounds, 2 * MOST_LEDGERS)
     return {
         "tallies": directions * tally,
-        "threads": min(threads + WAITING, len(schedule)) * tally + threads * _THREAD,
+        "threads": in_flight(AnalogRun.waiting, threads, len(schedule)) * tally + threads * _THREAD,
         "queues": threads * _queues(plan) + 2 * directions * _thresholds(plan),
         # The balance of one direction needs three copies of its ledgers.
         "audit": (directions + 3) * ledgers * (N_LEDGER * distinct * _NUMBER + _LEDGER),
@@ -172,12 +175,14 @@ def _of_replicates(plan, choice, threads):
     replicate = plan.n_distinct * plan.rows * plan.width * _NUMBER
     blocks = BATCHES * len(plan.position) * min(plan.rows, BLOCKS[0]) * min(plan.columns, BLOCKS[1])
     held = len(plan.theta_deg) * views * blocks * _NUMBER
+    pieces = len(plan.theta_deg) * (len(chunks(estimator.chunk)) + estimator.has_nodes)
     return {
         "result": held,
         "file": int(_WRITTEN * held),
         # Mean and variance of what is finished, of the round at work, and the effective number.
         "tallies": len(plan.theta_deg) * views * 5 * replicate,
-        "threads": (threads + WAITING) * estimator.chunk * slots * replicate + threads * workspace,
+        "threads": in_flight(ReplicatedRun.waiting, threads, pieces) * estimator.chunk * slots * replicate
+        + threads * workspace,
         "scratch": 4 * views * replicate,
         "estimators": shared,
     }

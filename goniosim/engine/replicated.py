@@ -9,7 +9,7 @@ from ..slices import PARAMETRIZATIONS
 from .estimate import Estimate, noise
 from .replicates import Replicates, unfold
 from .rounds import REPLICATES as N_REPLICATES
-from .rounds import SMALLEST, chunks, sizes
+from .rounds import chunks, sizes
 from .runs import Spending, Work
 from .unit import child_key
 
@@ -44,6 +44,8 @@ class ReplicatedRun:
     """
 
     audits = False
+    # Pieces that wait for their turn, for each thread: those of a hard direction take several times as long.
+    waiting = 3
 
     def __init__(self, plan, estimator, sides, key):
         self.sides = sides
@@ -84,15 +86,15 @@ class ReplicatedRun:
 
     def rounds(self, rays):
         """Pieces of work of so many light paths of each direction, or a few more, by rounds: lists of Work."""
-        return [self._round(size, range(len(self._sums))) for size in sizes(rays)]
+        return [self._round(size, range(len(self._sums))) for size in sizes(rays, self._estimator.smallest)]
 
     def rays_of_round(self, number):
         """Light paths of a direction in a round of a run that stops at an accuracy."""
-        return N_REPLICATES * SMALLEST << number
+        return N_REPLICATES * self._estimator.smallest << number
 
     def round(self, number, directions):
         """Pieces of work of such a round."""
-        return self._round(SMALLEST << number, directions)
+        return self._round(self._estimator.smallest << number, directions)
 
     def _round(self, size, directions):
         pieces = chunks(self._estimator.chunk)

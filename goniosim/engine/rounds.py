@@ -14,19 +14,24 @@ FEWEST_PATHS = REPLICATES * SMALLEST
 FEWEST_REPLICATES = 8
 
 
-def sizes(paths):
+def sizes(paths, smallest):
     """Sizes of the replicates, round by round, that add up to a number of light paths.
 
     Parameters
     ----------
     paths : int
         Of one direction, at least.
+    smallest : int
+        Light paths of a replicate, at least, unless fewer than `FEWEST_PATHS` are asked for.
 
     Returns
     -------
     list of int
     """
-    rounds = max(1, (max(paths, 1) // FEWEST_PATHS + 1).bit_length() - 1)
+    least = REPLICATES * smallest
+    if paths >= FEWEST_PATHS:
+        paths = max(paths, least)
+    rounds = max(1, (max(paths, 1) // least + 1).bit_length() - 1)
     first = -(-paths // (REPLICATES * ((1 << rounds) - 1)))
     return [first << k for k in range(rounds)]
 

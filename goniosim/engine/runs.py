@@ -32,6 +32,18 @@ class Work:
     coarse: bool = False
 
 
+def in_flight(waiting, threads, works):
+    """Pieces of work that are begun and not yet added up, at the most.
+
+    Parameters
+    ----------
+    waiting : int
+        Pieces that may wait for their turn to be added up, for each thread.
+    threads, works : int
+    """
+    return min((1 + waiting) * threads, works)
+
+
 class Spending:
     """What each direction has cost, and its checkpoints.
 

@@ -11,7 +11,7 @@ from .blas import one_thread
 from .estimate import noise
 from .estimators import ESTIMATORS
 from .replicates import unfold
-from .rounds import REPLICATES, SMALLEST, sizes
+from .rounds import REPLICATES, sizes
 from .unit import child_key
 
 # Child of the seed 0, for numbers that no replicate uses.
@@ -29,6 +29,8 @@ class Trial:
 
     Attributes
     ----------
+    smallest : int
+        Light paths of the smallest replicate that was made.
     shared : float
         Seconds of what all directions share.
     fixed, slope : float
@@ -42,6 +44,7 @@ class Trial:
         By way out, noise of those of a single replicate of the smallest size, in sr^-1/2.
     """
 
+    smallest: int
     shared: float
     fixed: float
     slope: float
@@ -52,11 +55,11 @@ class Trial:
 
     def seconds(self, rays):
         """Seconds of replicates of so many light paths of each direction, on one thread."""
-        return self.calls * sum(self.fixed + self.slope * size for size in sizes(rays))
+        return self.calls * sum(self.fixed + self.slope * size for size in sizes(rays, self.smallest))
 
     def noise(self, side, rays):
         """Noise of a slice after so many light paths, in sr^-1/2; that of a lattice falls faster."""
-        return self.spread[side] * math.sqrt(SMALLEST / (REPLICATES * sum(sizes(rays))))
+        return self.spread[side] * math.sqrt(self.smallest / (REPLICATES * sum(sizes(rays, self.smallest))))
 
 
 def try_replicates(plan, choice):
@@ -93,23 +96,23 @@ def _trial(plan, choice, estimator, shared):
         events = workspace.run(middle, size, np.array(keys, np.uint64), out, threading.Event())
         return time.perf_counter() - start, events
 
-    small, found = np.inf, []
+    smallest, small, found = estimator.smallest, np.inf, []
     for number in range(0, FEWEST, estimator.chunk):
-        small = min(small, run(SMALLEST, number)[0])
+        small = min(small, run(smallest, number)[0])
         found.append(out.copy())
-    for size in (SMALLEST << doublings for doublings in range(1, DOUBLINGS + 1)):
+    for size in (smallest << doublings for doublings in range(1, DOUBLINGS + 1)):
         large, events = run(size)
         # What a path adds must stand out of what a replicate costs in any case.
         if large > 2.0 * small:
             break
-    slope = max((large - small) / (size - SMALLEST), FASTEST)
-    fixed = max(small - slope * SMALLEST, 0.0)
+    slope = max((large - small) / (size - smallest), FASTEST)
+    fixed = max(small - slope * smallest, 0.0)
     slices, spread = {}, {}
     for side, energies in _by_way_out(plan, choice.sides, np.concatenate(found)):
         slices[side] = energies.mean(axis=0)
         spread[side] = noise(plan, middle, energies.std(axis=0, ddof=1))
     calls = -(-REPLICATES // estimator.chunk) * len(plan.theta_deg)
-    return Trial(shared, fixed, slope, calls, events / float(size * estimator.chunk), slices, spread)
+    return Trial(smallest, shared, fixed, slope, calls, events / float(size * estimator.chunk), slices, spread)
 
 
 def _by_way_out(plan, sides, found):

@@ -5,17 +5,19 @@ import math
 import numpy as np
 import pytest
 
+from goniosim.engine import simulate
 from goniosim.engine.operators.gather import BLOCK, gather
 from goniosim.engine.operators.stencils import padded
 from goniosim.engine.unit import child_key
 from goniosim.optics.fresnel import dielectric_transmittance
 from goniosim.slices import PARAMETRIZATIONS, slice_geometry
+from reference.scenes import dielectric, make_scene, medium
 
 NODES, ROWS, THETA, KEYS = 30, 5, 70.0, 200
 NOTHING = np.empty(0)
 
 
-def gathered(radiance, parametrization, columns, exits=NOTHING, taus=(0.0,)):
+def gathered(radiance, parametrization, columns, exits=NOTHING, taus=(0.0,), source=NOTHING):
     """Energies of KEYS replicates, shape (KEYS, n, rows, width), of a radiance of shape (..., n)."""
     width = columns if columns % 2 else columns // 2
     count = np.shape(radiance)[-1]
@@ -25,7 +27,7 @@ def gathered(radiance, parametrization, columns, exits=NOTHING, taus=(0.0,)):
     out = np.full((KEYS, count, ROWS * width), np.nan)
     code = PARAMETRIZATIONS[parametrization][0]
     for k in range(KEYS):
-        gather(values, code, ROWS, columns, light, exits, NOTHING, np.array(taus), child_key(1, k), out[k])
+        gather(values, code, ROWS, columns, light, exits, source, np.array(taus), child_key(1, k), out[k])
     return out.reshape(KEYS, count, ROWS, width)
 
 
@@ -77,3 +79,28 @@ def test_what_is_linear_in_a_cell_has_next_to_no_noise(exits):
     assert (found.std(axis=0) / found.mean(axis=0)).max() < 0.04
     found = gathered(np.ones(1), "classic", 10, exits)[:, 0, 0]
     assert (found.std(axis=0) / found.mean(axis=0)).max() < 0.04
+
+
+@pytest.mark.parametrize(("alpha", "exit_alpha"), [(0.4, 0.3), (0.3, 0.02), (0.3, 0.0)])
+def test_light_through_both_interfaces_is_that_of_independent_paths(alpha, exit_alpha):
+    """Of a radiance that is the light alone, through a wide exit, a narrow one and a smooth one: rows of cells.
+
+    Against what independent paths transmit without any reflection, within 5 sigma: false-alarm rate 1e-5, as the
+    scatter is estimated.
+    """
+    layers = [dielectric(1.5, alpha), medium(0.3), dielectric(1.0, exit_alpha)]
+    scene = make_scene(layers, THETA, rows=ROWS, columns=40, orders=1)
+    straight = simulate(scene, rays=2_000_000, seed=1, estimator="analog").components["transmission"].orders["order_1"]
+    exact, error2 = straight.energy[0, 0].sum(axis=1), (straight.stderr[0, 0] ** 2).sum(axis=1)
+    found = gathered(np.zeros(2), "classic", 40, np.array([exit_alpha, 1.5]), [0.3], np.array([alpha, 1.5]))
+    assert (found[:, 1] == 0.0).all()
+    rows = 2.0 * found[:, 0].sum(axis=2)
+    error2 += rows.var(axis=0, ddof=1) / KEYS
+    assert (np.abs(rows.mean(axis=0) - exact) <= 5.0 * np.sqrt(error2)).all()
+
+
+def test_light_far_from_a_narrow_exit_is_not_left_to_rare_facets():
+    """Five cells in a row 50 degrees and more from where the light leaves for, through an exit of width .001."""
+    exits, source = np.array([0.001, 1.5]), np.array([0.05, 1.5])
+    far = gathered(np.zeros(1), "classic", 40, exits, [0.0], source)[:, 0, 0, -5:].sum(axis=1)
+    assert far.mean() > 0.0 and far.std(ddof=1) < 0.5 * far.mean() and far.max() < 4.0 * far.mean()

@@ -27,13 +27,14 @@ def added(rounds, columns=10):
     return sums
 
 
+@pytest.mark.parametrize("smallest", [SMALLEST, 3 * SMALLEST])
 @pytest.mark.parametrize("paths", [1, 1000, FEWEST_PATHS, 3 * FEWEST_PATHS, 10**7, 10**9 + 1])
-def test_sizes_double_and_add_up(paths):
-    found = sizes(paths)
+def test_sizes_double_and_add_up(paths, smallest):
+    found = sizes(paths, smallest)
     total = REPLICATES * sum(found)
-    assert paths <= total < paths + REPLICATES * 2 ** len(found)
+    assert paths <= total < paths + REPLICATES * 2 ** len(found) or total == REPLICATES * smallest > paths
     assert all(b == 2 * a for a, b in zip(found, found[1:], strict=False))
-    assert len(found) == 1 or found[0] >= SMALLEST
+    assert (len(found) == 1 and paths < FEWEST_PATHS) or found[0] >= smallest
 
 
 @pytest.mark.parametrize("chunk", [1, 3, 8, 32, 50])

@@ -10,6 +10,8 @@ Every estimator is a class of ways out with
     As in ``simulation.estimator``.
 ``chunk``
     Replicates that one call of ``run`` makes at the most.
+``smallest``
+    Light paths of a replicate, at least.
 ``mends``
     Whether the variance of cells with few hits is mended, see `goniosim.engine.mending`.
 ``has_nodes``

@@ -21,6 +21,7 @@ import numpy as np
 
 from ...slices import CLASSIC, PARAMETRIZATIONS
 from ..layout import UP
+from ..rounds import SMALLEST
 from ..stages import LAMBERT, ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC
 from ..unit import child_key
 from .base_draws import BLOCK, N_SCRATCH, come_back, enter, look, uniforms
@@ -47,6 +48,7 @@ class Connection:
 
     name = "connection"
     chunk = 1
+    smallest = SMALLEST
     mends = False
     has_nodes = False
 

@@ -15,7 +15,9 @@ from ..operators.arrivals import bin_arrivals
 from ..operators.choice import IN, choose, inner_index
 from ..operators.exits import TAILS
 from ..operators.gather import POINTS, POINTS_OF_EXIT, gather
+from ..operators.light import LIGHTS
 from ..operators.stencils import padded
+from ..rounds import SMALLEST
 from ..unit import BATCH
 
 # Nodes half a degree apart.
@@ -42,6 +44,8 @@ class Operator:
 
     name = "operator"
     chunk = 8
+    # Paths cost little beside what is done with them, and fewer may miss what dim blocks rest on.
+    smallest = 2 * SMALLEST
     mends = False
     has_nodes = True
 
@@ -200,6 +204,7 @@ class Workspace:
             out.reshape(-1, plan.rows * plan.width),
         )
         looks = POINTS_OF_EXIT + TAILS if len(self.exits) else POINTS
+        looks += LIGHTS if len(self.source) else 0
         return LOOK * looks * plan.rows * plan.width
 
     def _radiance(self, values):

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..rounds import SMALLEST
 from ..splitting.layout import LATER, PHASES
 from ..splitting.lobes import MOST_FACETS, facets_per_arrival
 from ..splitting.usual import usual_weights
@@ -36,6 +37,7 @@ class Split:
 
     name = "split"
     chunk = 1
+    smallest = SMALLEST
     mends = True
     has_nodes = False
 

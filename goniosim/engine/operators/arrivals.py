@@ -18,7 +18,7 @@ from .bins import clear, deposit
 from .branches import absorb, enter, find_brightest, forget, go_through, turn_back
 from .facets import draw, draw_lattice, meet_facets
 from .nodes import stencils
-from .queues import close_up, derive_keys, launch, play, pop, push, toss
+from .queues import FAINT, NEVER, close_up, derive_keys, launch, play, pop, push, toss
 from .rays import (
     AROUND,
     BRIGHTEST,
@@ -167,7 +167,9 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
                 go_through(batch, n, alphas[k], eta, scratch)
             up = (through == 1) == (side == BELOW)
             q = 2 * (k - 1) + BELOW if up else 2 * (k + 1) + ABOVE
-            play(batch[KEY], n, through, scratch[BRIGHTEST], scratch[GAIN], scratch[NEXT_KEY])
+            # What arrives next at the interface is binned first: it may be all that a dim base sends back.
+            faint = NEVER if q == 2 * target[0] + target[1] else FAINT
+            play(batch[KEY], n, through, faint, scratch[BRIGHTEST], scratch[GAIN], scratch[NEXT_KEY])
             first = Z if kinds[q // 2] == LAMBERT else X
             filled[q] += push(batch, n, channels, scratch, steps, lists, queues[q], filled[q], first)
     return False

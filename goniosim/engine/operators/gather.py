@@ -6,11 +6,10 @@ In lockstep over some neighbouring cells of a row, in short loops that become ve
 import numpy as np
 
 from ..._jit import kernel, stage
-from ...optics.fresnel import dielectric_transmittance
 from ...optics.medium import path_length, transmittance
-from ...optics.microfacet import microfacet_transmission
 from ...optics.random import derive_key, uniform
 from .exits import TAILS, core_heights, follow, tail_heights
+from .light import LIGHTS, draw_light, see_light, weigh_light
 from .points import columns_above, find_points
 from .stencils import LANES, WEIGHTS, find_stencils, interpolate
 
@@ -21,11 +20,11 @@ CELLS = 2
 # Cells at a time: their arrays stay in the nearest cache.
 BLOCK = 128
 
-# Rows of the scratch array. First what is drawn: a point, a facet, and one of the tail.
-U, V, AZIMUTH, HEIGHT, TAIL_AZIMUTH, TAIL_DRAW = range(6)
-_DRAWS_OF_POINTS, _DRAWS = 2, 6
+# Rows of the scratch array. First what is drawn: a point, a facet, one of the tail, and one that the light meets.
+U, V, AZIMUTH, HEIGHT, TAIL_AZIMUTH, TAIL_DRAW, LIGHT_AZIMUTH, LIGHT_HEIGHT = range(8)
+_DRAWS_OF_POINTS, _DRAWS, _DRAWS_OF_LIGHT = 2, 6, 8
 # The point, cos(theta_v) d omega_v there; the direction inside; the tail's facet, its share; what a look is worth.
-X, Y, Z, MEASURE, INSIDE_X, INSIDE_Y, INSIDE_Z, TAIL_HEIGHT, TAIL_SHARE, GAIN, N_SCRATCH = range(6, 17)
+X, Y, Z, MEASURE, INSIDE_X, INSIDE_Y, INSIDE_Z, TAIL_HEIGHT, TAIL_SHARE, GAIN, N_SCRATCH = range(8, 19)
 
 
 @kernel
@@ -59,6 +58,8 @@ def gather(values, parametrization, rows, columns, light, exits, source, taus, k
     leaves = exits.shape[0] > 0
     # A smooth exit has one facet.
     rough = leaves and exits[0] > 0.0
+    lit = source.shape[0] > 0
+    draws = (_DRAWS_OF_LIGHT if lit else _DRAWS) if leaves else _DRAWS_OF_POINTS
     points = POINTS_OF_EXIT if leaves else POINTS
     out[...] = 0.0
     for row in range(rows):
@@ -66,7 +67,7 @@ def gather(values, parametrization, rows, columns, light, exits, source, taus, k
         for first in range(0, count, BLOCK):
             n = min(BLOCK, count - first)
             cell = row * width + first
-            _draw(cells_key, cell, n, _DRAWS if leaves else _DRAWS_OF_POINTS, space)
+            _draw(cells_key, cell, n, draws, space)
             for i in range(points):
                 find_points(
                     i * (4 // points), parametrization, row, first, n, rows, columns, light,
@@ -84,10 +85,22 @@ def gather(values, parametrization, rows, columns, light, exits, source, taus, k
                         x, y, z = space[INSIDE_X], space[INSIDE_Y], space[INSIDE_Z]
                     find_stencils(x, y, z, n, values, weights, nodes)
                     interpolate(values, weights, nodes, n, found)
-                    if source.shape[0] > 0:
-                        _see_light(x, y, z, n, light, source, taus.shape[0], weights[0], found)
+                    if lit:
+                        see_light(
+                            x, y, z, space[X], space[Y], space[Z], n, light, source, exits, weights[0]
+                        )  # fmt: skip
+                        _add_light(weights[0], n, taus.shape[0], found)
                     _absorb(z, n, taus, leaves, space[GAIN], shares)
                     _add(found, n, shares, cell, out)
+                if lit and rough and i % (POINTS_OF_EXIT // LIGHTS) == 0:
+                    number = i // (POINTS_OF_EXIT // LIGHTS)
+                    x, y, z = space[INSIDE_X], space[INSIDE_Y], space[INSIDE_Z]
+                    draw_light(space[LIGHT_AZIMUTH], space[LIGHT_HEIGHT], number, n, light, source, x, y, z)
+                    weigh_light(
+                        x, y, z, space[X], space[Y], space[Z], n, light, source, exits, space[MEASURE], space[GAIN]
+                    )  # fmt: skip
+                    _absorb(z, n, taus, leaves, space[GAIN], shares)
+                    _add_shares(shares, n, cell, out)
 
 
 @stage
@@ -97,7 +110,7 @@ def _draw(key, cell, n, dimensions, space):
         row = space[dimension]
         for i in range(n):
             row[i] = uniform(dimension_key, cell + i)
-    if dimensions == _DRAWS:
+    if dimensions >= _DRAWS:
         core_heights(n, space[HEIGHT])
 
 
@@ -125,16 +138,8 @@ def _leave(n, turn, tail, exits, space):
 
 
 @stage
-def _see_light(x, y, z, n, light, source, channels, seen, found):
-    """Add the radiance of the light itself, as seen through the top interface, to the first numbers."""
-    alpha = source[0]
-    eta = source[1]
-    lx = light[0]
-    ly = light[1]
-    lz = light[2]
-    for i in range(n):
-        value, cosine = microfacet_transmission(x[i], y[i], z[i], lx, ly, lz, alpha, eta)
-        seen[i] = value * eta * eta * dielectric_transmittance(cosine, eta)
+def _add_light(seen, n, channels, found):
+    """The light is in the first numbers."""
     for c in range(channels):
         lanes = found[c // LANES]
         for i in range(n):
@@ -163,3 +168,12 @@ def _add(found, n, shares, cell, out):
         cells = out[e][cell : cell + n]
         for i in range(n):
             cells[i] += share[i] * lanes[i, e % LANES]
+
+
+@stage
+def _add_shares(shares, n, cell, out):
+    for c in range(shares.shape[0]):
+        share = shares[c]
+        cells = out[c][cell : cell + n]
+        for i in range(n):
+            cells[i] += share[i]

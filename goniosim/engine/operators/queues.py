@@ -8,7 +8,7 @@ from ..sorting import move, sort
 from .rays import GAIN, KEY, LEAST_COSINE, MOVED, NEXT_KEY, NEXT_X, NEXT_Y, NEXT_Z, RATIO, SLOT, WEIGHT, X, Y, Z
 
 # A ray that would be fainter than this, had its facets been drawn from plain distributions, plays Russian roulette.
-FAINT = 0.01
+FAINT, NEVER = 0.01, 1e-290
 # Numbers that a ray draws at an event besides those of `facets`: roulettes of the two branches, a coin; and the keys of
 # the branches.
 _ROULETTE, _COIN, _BRANCH = 3, 5, 6
@@ -73,12 +73,13 @@ def toss(row, n, reflectance):
 
 
 @stage
-def play(row, n, through, brightest, gain, next_row):
-    """Roulette on a branch, and the keys of its rays."""
+def play(row, n, through, faint, brightest, gain, next_row):
+    """Roulette on a branch, of rays below ``faint``, and the keys of its rays."""
     keys = row.view(np.uint64)
     next_keys = next_row.view(np.uint64)
+    inverse = 1.0 / faint
     for i in range(n):
-        bright = brightest[i] * (1.0 / FAINT)
+        bright = brightest[i] * inverse
         wins = uniform(keys[i], _ROULETTE + through) < gain[i] * bright
         # Who is not faint wins, and keeps the weight.
         gain[i] = max(gain[i], 1.0 / max(bright, 1e-300)) if wins else 0.0
