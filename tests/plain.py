@@ -3,6 +3,7 @@
 import numpy as np
 
 from goniosim.engine.layout import DOWN, UP
+from goniosim.engine.rounds import SMALLEST
 from goniosim.engine.unit import Tally, Workspace
 
 
@@ -11,6 +12,7 @@ class Plain:
 
     name = "plain"
     chunk = 3
+    smallest = SMALLEST
     mends = False
     has_nodes = False
 

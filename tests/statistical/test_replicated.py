@@ -11,11 +11,12 @@ from goniosim.engine import assembly
 from goniosim.engine.analog import AnalogRun
 from goniosim.engine.drive import Drive
 from goniosim.engine.estimate import noise
+from goniosim.engine.estimators import Operator, Split
 from goniosim.engine.gain import gains, noise_of_a_path
 from goniosim.engine.layout import DOWN, UP
 from goniosim.engine.plan import make_plan
 from goniosim.engine.replicated import ReplicatedRun
-from goniosim.engine.rounds import FEWEST_PATHS
+from goniosim.engine.rounds import REPLICATES as N_REPLICATES
 from plain import Plain
 from reference.scenes import dielectric, make_scene, medium
 
@@ -157,11 +158,13 @@ def test_a_few_paths_without_slices_tell_the_noise_of_independent_paths(pair):
 
 
 def test_both_components_of_a_slab_grow_until_the_limit():
-    layers = [dielectric(1.5, 0.2), dielectric(1.0, 0.2)]
-    scene = make_scene(layers, 30.0, rows=9, columns=36)
-    # What its nodes may be off by leaves room for it.
-    found = simulate(scene, target=3.5e-4, max_rays=4e5)
-    assert found.target_reached is False and found.rays.tolist() == [3 * FEWEST_PATHS]
-    for name in ("reflection/internal", "transmission"):
-        assert found.components[name].estimator == ["operator"]
+    """What nodes may be off by leaves no room for the reflection, which goes on with smaller replicates."""
+    scene = make_scene([dielectric(1.5, 0.3), dielectric(1.0, 0.3)], 30.0, rows=9, columns=36)
+    found = simulate(scene, target=1e-4, max_rays=8e5)
+    estimators = {"reflection/internal": Split, "transmission": Operator}
+    rays = [3 * N_REPLICATES * each.smallest for each in estimators.values()]
+    assert found.target_reached is False and found.rays.tolist() == [min(rays)]
+    assert found.cost.rays[0, -1] == max(rays) > min(rays)
+    for name, each in estimators.items():
+        assert found.components[name].estimator == [each.name]
         assert (np.diff(found.cost.error[name]) < 0.0).all()

@@ -50,7 +50,7 @@ def test_threads_of_replicates(tau):
     """Two rounds of an operator and of a split walk, on 1 and 3 threads."""
     layers = [dielectric(1.5, 0.2), medium(tau), dielectric(1.0, 0.001)]
     scene = make_scene(layers, [45], rows=9, columns=36)
-    one, three = (simulate(scene, rays=400_000, seed=8, threads=threads) for threads in (1, 3))
+    one, three = (simulate(scene, rays=800_000, seed=8, threads=threads) for threads in (1, 3))
     assert one.components["reflection/internal"].estimator == ["operator"]
     assert len(one.cost.rays[0]) > 1
     assert_same_bits(one, three)
