@@ -7,7 +7,7 @@ LINTERS := $(VENV)/.linters
 
 # The study of the paper: light paths per incident direction, whose noise is that of 1.6e8 independent ones or less
 # (`make headline`), and the folder of its results.
-RAYS ?= 2e5
+RAYS ?= 3e6
 PAPER := out/paper
 
 # Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.

@@ -75,6 +75,13 @@ def test_rays_are_found_that_have_the_noise_that_is_needed(monkeypatch, tmp_path
     assert "plastics" in headline.row("plastics", [timed])
 
 
+def test_directions_that_need_few_rays_are_apart():
+    rays = np.array([100, 260, 1000, 900, 520, 499])
+    assert headline.groups(rays) == [[2, 3, 4], [1, 5], [0]]
+    scene = parse_scene(SCENE.replace("[30]", "[0, 10, 20]"))
+    assert list(headline.part(scene, [0, 2]).incident.theta_deg) == [0.0, 20.0]
+
+
 def test_dark_directions_and_components_need_nothing():
     found = SimpleNamespace(noise={"a": np.array([0.2, 0.0]), "b": np.array([0.1, 0.0])})
     ratios = headline.noise_ratios(found, {"a": np.array([0.4, 0.0]), "b": np.array([0.1, 0.0])})

@@ -167,6 +167,7 @@ def test_the_effective_number_is_that_of_the_paths():
     np.testing.assert_allclose(effective_count(mean, stderr, 500)[kept], expected[kept], rtol=1e-9)
     assert effective_count(0.0, 0.0, 500) == 0.0 and uncertain(0.0, 0.0, 500)
     assert effective_count(1.0, 0.0, 500) == 500.0 and not uncertain(1.0, 0.0, 500)
+    assert effective_count(1e-300, 1.0, 500) == 0.0
 
 
 def test_an_absorbed_channel_of_well_hit_cells_is_uncertain():

@@ -7,7 +7,7 @@ THETAS = [0, 15, 30, 45, 60, 75, 85]
 COAT = {"type": "dielectric", "eta": 1.5}
 KAPPA = [1.0, 0.01, 0.01]
 # Light paths per incident direction.
-RAYS = 2e5
+RAYS = 1e6
 
 
 def simulate(name, alpha0, tau, base, orders=None):
