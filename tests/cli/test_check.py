@@ -133,7 +133,8 @@ def _stack(n, alpha, base="{type: lambert, rho: [0.5, 0.6, 0.7]}"):
 
 # Interfaces, alpha, base, angles, rows, columns, rays, threads.
 SCENES = {
-    "directions": (2, 0.5, None, 60, 90, 360, 300_000, 1),
+    # A slice with noise: without, files are a fraction of what is predicted.
+    "directions": (2, 0.5, "{type: conductor, eta: 1.45, kappa: 1.0, alpha: 0.2}", 60, 90, 360, 300_000, 1),
     "threads": (2, 0.5, "{type: dielectric, eta: 1.0, alpha: 0.5}", 2, 200, 720, 2000, 24),
     "layers": (600, 0.0, None, 1, 9, 18, 100, 2),
     "cells": (2, 0.5, None, 1, 1000, 1000, 2_000_000, 1),

@@ -97,7 +97,7 @@ def test_what_numba_cannot_read_is_one_line(setting):
     found = subprocess.run(
         [sys.executable, "-c", code, "models"], env=os.environ | {name: value}, capture_output=True, text=True
     )
-    assert (found.returncode, found.stdout) == (9, "")
+    assert (found.returncode, found.stdout) == (10, "")
     assert found.stderr.startswith(f"goniosim: error: {setting}: ") and found.stderr.count("\n") == 1
     assert "unset this environment variable" in found.stderr
 
