@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
+from goniosim.report.cost.directions import lit_from
 from goniosim.report.cost.runs import run
 from goniosim.scene import load_scenes
 
@@ -90,8 +91,7 @@ def groups(rays):
 
 def part(scene, directions):
     """The scene with some of its directions."""
-    theta_deg = [scene.incident.theta_deg[m] for m in directions]
-    return scene.model_copy(update={"incident": scene.incident.model_copy(update={"theta_deg": theta_deg})})
+    return lit_from(scene, [scene.incident.theta_deg[m] for m in directions])
 
 
 def measure(scene, sample, folder):

@@ -29,6 +29,7 @@ import numpy as np
 
 from benchmarks.accuracy import ANGLES, STACKS, sized, squares
 from goniosim.effective import uncertain
+from goniosim.report.cost.directions import lit_from
 from goniosim.report.cost.runs import run, sampled
 from goniosim.scene import load_scene
 from goniosim.sums import BATCHES, block_sums
@@ -244,8 +245,7 @@ class Slice:
 
 def rows_of(stack, estimator, paths, seeds, threads):
     """Rows of a stack by ``auto`` or ``analog``."""
-    scene = load_scene(STACKS / f"{stack}.yaml")
-    scene = scene.model_copy(update={"incident": scene.incident.model_copy(update={"theta_deg": list(ANGLES)})})
+    scene = lit_from(load_scene(STACKS / f"{stack}.yaml"), ANGLES)
     with tempfile.TemporaryDirectory() as folder:
         slices = {}
         for seed in range(1, seeds + 1):

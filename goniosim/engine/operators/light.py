@@ -38,28 +38,24 @@ def see_light(x, y, z, vx, vy, vz, n, light, source, exits, seen):
     seen : ndarray, shape (>= n,)
         Overwritten.
     """
-    alpha = source[0]
-    eta = source[1]
-    exit_alpha = exits[0]
-    exit_eta = exits[1]
     lx = light[0]
     ly = light[1]
     lz = light[2]
+    eta = source[1]
     for i in range(n):
-        lit, cosine = microfacet_transmission(x[i], y[i], z[i], lx, ly, lz, alpha, eta)
+        lit, cosine, from_light = _lobe(x[i], y[i], z[i], lx, ly, lz, source[0], eta)
         share = 1.0
-        if exit_alpha > 0.0:
-            met, _ = microfacet_transmission(-x[i], -y[i], z[i], vx[i], vy[i], vz[i], exit_alpha, exit_eta)
-            from_exit = _density(met, z[i], exit_alpha, exit_eta)
-            from_light = COUNT * _density(lit, z[i], alpha, eta)
-            share = _share(from_exit, from_light)
+        if exits[0] > 0.0:
+            _, _, from_exit = _lobe(-x[i], -y[i], z[i], vx[i], vy[i], vz[i], exits[0], exits[1])
+            share = _share(from_exit, COUNT * from_light)
         seen[i] = share * lit * eta * eta * dielectric_transmittance(cosine, eta)
 
 
 @scalar
-def _density(value, z, alpha, eta):
-    """Of directions refracted by a visible facet, by the value of the lobe there."""
-    return value * eta * eta * z / smith_g1(z, alpha)
+def _lobe(bx, by, bz, x, y, z, alpha, eta):
+    """As `microfacet_transmission`, and the density of directions inside that visible facets refract (x, y, z) into."""
+    value, cosine = microfacet_transmission(bx, by, bz, x, y, z, alpha, eta)
+    return value, cosine, value * eta * eta * bz / smith_g1(bz, alpha)
 
 
 @scalar
@@ -116,19 +112,15 @@ def weigh_light(x, y, z, vx, vy, vz, n, light, source, exits, measure, gain):
     gain : ndarray, shape (>= n,)
         Overwritten.
     """
-    alpha = source[0]
-    eta = source[1]
-    exit_alpha = exits[0]
-    exit_eta = exits[1]
     lx = light[0]
     ly = light[1]
     lz = light[2]
+    eta = source[1]
     for i in range(n):
-        lit, cosine_l = microfacet_transmission(x[i], y[i], z[i], lx, ly, lz, alpha, eta)
-        met, cosine_v = microfacet_transmission(-x[i], -y[i], z[i], vx[i], vy[i], vz[i], exit_alpha, exit_eta)
-        from_exit = _density(met, z[i], exit_alpha, exit_eta)
-        from_light = COUNT * _density(lit, z[i], alpha, eta)
+        lit, cosine_l, from_light = _lobe(x[i], y[i], z[i], lx, ly, lz, source[0], eta)
+        met, cosine_v, from_exit = _lobe(-x[i], -y[i], z[i], vx[i], vy[i], vz[i], exits[0], exits[1])
+        from_light *= COUNT
         radiance = lit * eta * eta * dielectric_transmittance(cosine_l, eta)
-        passed = met * z[i] * dielectric_transmittance(cosine_v, exit_eta)
+        passed = met * z[i] * dielectric_transmittance(cosine_v, exits[1])
         weight = COUNT / LIGHTS * _share(from_light, from_exit) / max(from_light, _LEAST)
         gain[i] = measure[i] * radiance * passed * weight

@@ -38,7 +38,12 @@ def gaps(scene):
 def dense_scene(scene):
     """The scene with all angles of `gaps`."""
     angles = sorted({angle for several in gaps(scene).values() for gap in several for angle in gap})
-    return scene.model_copy(update={"incident": scene.incident.model_copy(update={"theta_deg": tuple(angles)})})
+    return lit_from(scene, angles)
+
+
+def lit_from(scene, theta_deg):
+    """The scene with other incident angles."""
+    return scene.model_copy(update={"incident": scene.incident.model_copy(update={"theta_deg": tuple(theta_deg)})})
 
 
 def lost_between(scene, result):
