@@ -30,7 +30,7 @@ def _spread(directions, ratios, weights, bins):
     n = directions.shape[1]
     x, y, z = directions
     polar, around, first = np.empty((4, n)), np.empty((4, n)), np.empty((2, n), np.int64)
-    nodes.stencils(x, y, z, ratios, n, bins.shape[1] // 2, polar, around, first)
+    nodes.stencils(x, y, z, ratios, n, bins.shape[1] // 2, bins.shape[1] - 1, polar, around, first)
     deposit(weights, np.zeros(n), n, polar, around, first, bins)
 
 
@@ -158,7 +158,7 @@ def test_kernels_and_cells_have_the_closed_form(kind, number, tolerance):
     # A single column of the kernel: the table of all nodes is not needed.
     rows = cells.CellRows(plan, fine)
     table = np.empty((2 * fine + 1, fine + 1, fine + 1))
-    kernels.tabulate(event, 0.3, eta, kappa, 0, table)
+    kernels.tabulate(event, 0.3, eta, kappa, fine, 0, table)
     column = rows.combine(0, table[:, :, 2 * number : 2 * number + 1])[:, :, 0]
     found = np.empty((2 * fine + 1, 45))
     to_coefficients(cosines(2 * fine) * end_weights(2 * fine), column, found)
@@ -282,6 +282,16 @@ def test_the_variant_follows_from_widths(layers, side, expected):
         variant = Operator(plan, (side,)).variant
         assert Operator.refusal(plan, (side,)) is None
         assert (variant.interface, variant.leaves) == expected
+
+
+@pytest.mark.parametrize(("alpha", "base", "polar"), [(0.05, 0.001, 360), (0.05, 0.2, 180), (0.11, 0.001, 180)])
+def test_arrivals_at_a_narrow_exit_have_finer_nodes(alpha, base, polar):
+    """But not those at a wide base, from which what arrives at the exit is interpolated nowhere."""
+    made = Operator(make_plan(make_scene([dielectric(1.5, alpha), conductor(1.9, 1.0, base)], 30.0)), (UP,))
+    assert (made.nodes, made.application.polar) == (180, polar)
+    shared, own = made.memory
+    coarse, less = Operator(made.plan, (UP,), polar=180).memory
+    assert (shared > 1.8 * coarse, own > 1.8 * less) == (polar == 360, polar == 360)
 
 
 def test_one_operator_serves_one_way_out():

@@ -12,7 +12,7 @@ import numpy as np
 from ..operators import cells, rays
 from ..operators.application import Application, order_ahead
 from ..operators.arrivals import bin_arrivals
-from ..operators.choice import IN, choose, inner_index
+from ..operators.choice import IN, choose, finer, inner_index
 from ..operators.exits import TAILS
 from ..operators.gather import POINTS, POINTS_OF_EXIT, gather
 from ..operators.light import LIGHTS
@@ -40,6 +40,8 @@ class Operator:
         One way out, see `refusal`.
     nodes : int
         From the pole to grazing angles.
+    polar : int, optional
+        The same for the polar angles of arrivals only; by default by the width of the exit.
     """
 
     name = "operator"
@@ -64,14 +66,15 @@ class Operator:
         few = replace(plan, theta_deg=plan.theta_deg[:1], light=plan.light[:1], rows=2, columns=columns)
         return cls(few, sides, nodes=4)
 
-    def __init__(self, plan, sides, nodes=NODES):
+    def __init__(self, plan, sides, nodes=NODES, polar=None):
         (side,) = sides
         self.plan = plan
         self.nodes = nodes
         self.variant = choose(plan, side)
         self.slots = int(plan.slots[side, 1])
         self.ahead = order_ahead(plan, self.variant, side)
-        self.application = Application(plan, self.variant, self.nodes, self.slots, self.chunk)
+        polar = polar or nodes * finer(plan, self.variant)
+        self.application = Application(plan, self.variant, self.nodes, polar, self.slots, self.chunk)
 
     def prepare(self):
         """Tabulate the interface, for all incident directions."""

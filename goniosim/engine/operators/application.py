@@ -25,10 +25,11 @@ class Application:
         Whether `apply` yields energies of classic cells instead of radiance at the nodes.
     """
 
-    def __init__(self, plan, variant, nodes, slots, replicates):
+    def __init__(self, plan, variant, nodes, polar, slots, replicates):
         self.plan = plan
         self.variant = variant
         self.nodes = nodes
+        self.polar = polar
         self.slots = slots
         self.replicates = replicates
         k = variant.interface
@@ -47,7 +48,7 @@ class Application:
         plan, variant = self.plan, self.variant
         k = variant.interface
         self.matrix = cosines(2 * self.nodes)
-        first = self._table(self.groups, self.rows[0])
+        first = self._table(self.groups, 0)
         if self.conductor:
             for c in range(self.groups):
                 eta, kappa = plan.spectral[k, ETA, c], plan.spectral[k, KAPPA, c]
@@ -57,7 +58,7 @@ class Application:
             self._tabulate(event, k, inner_index(plan, k), 0.0, self.rows[0], first[0])
         self.kernels = [first]
         if variant.leaves == THROUGH:
-            second = self._table(1, self.rows[1])
+            second = self._table(1, 1)
             eta = inner_index(plan, variant.exit)
             self._tabulate(kernels.TRANSMISSION, variant.exit, eta, 0.0, self.rows[1], second[0])
             # The exit sees light come from where it does not go.
@@ -69,8 +70,8 @@ class Application:
         else:
             self.to_azimuths = at_azimuths(2 * self.nodes, np.arange(2 * self.nodes + 1))
 
-    def _table(self, groups, rows):
-        return np.empty((groups, 2 * self.nodes + 1, len(rows), self.nodes + 1))
+    def _table(self, groups, stage):
+        return np.empty((groups, 2 * self.nodes + 1, len(self.rows[stage]), self._incoming[stage]))
 
     def _tabulate(self, event, k, eta, kappa, rows, found):
         kernels.coefficients(event, float(self.plan.alphas[k]), float(eta), float(kappa), rows, self.matrix, found)
@@ -92,32 +93,44 @@ class Application:
         return (measure * cosine * (math.pi / (2 * self.nodes)))[:, None] * passed
 
     @property
+    def _incoming(self):
+        """Polar angles of what each kernel is applied to: of the arrivals, and of what has left the first interface."""
+        return [self.polar + 1, len(self.rows[0])][: len(self.rows)]
+
+    @property
     def columns(self):
         """Columns of the matrices: replicates, slots and channels of a group."""
         return self.replicates * self.slots * self.plan.n_distinct // self.groups
 
     def workspace(self):
         """Two arrays that `apply` goes back and forth between; it begins with the arrivals in the first."""
-        size = self.groups * (2 * self.nodes + 1) * (self.nodes + 1) * self.columns
+        size = self.groups * (2 * self.nodes + 1) * self._most_polar * self.columns
         return np.empty(size), np.empty(size)
+
+    @property
+    def _most_polar(self):
+        return max(self.polar + 1, *(len(rows) for rows in self.rows))
 
     def bins(self, space, stride):
         """Where a walk bins arrivals at every ``stride``-th node: in the second array, which `apply` overwrites later.
 
         Shape (replicates * slots, azimuths, polar angles * channels).
         """
-        nodes = self.nodes // stride
-        shape = (self.replicates * self.slots, 2 * nodes + 1, (nodes + 1) * self.plan.n_distinct)
+        azimuths, polar = 2 * self.nodes // stride + 1, self.polar // stride + 1
+        shape = (self.replicates * self.slots, azimuths, polar * self.plan.n_distinct)
         return space[1][: math.prod(shape)].reshape(shape)
 
     def take(self, space, stride, factor):
         """Move ``factor`` times the bins to where `apply` expects them."""
         bins = self.bins(space, stride)
-        bins = bins.reshape(*bins.shape[:2], self.nodes // stride + 1, self.groups, -1)
-        arrivals = space[0].reshape(self.groups, 2 * self.nodes + 1, self.nodes + 1, bins.shape[0], -1)
+        bins = bins.reshape(*bins.shape[:2], self.polar // stride + 1, self.groups, -1)
+        arrivals = self._arrivals(space[0]).reshape(self.groups, 2 * self.nodes + 1, self.polar + 1, bins.shape[0], -1)
         if stride > 1:
             arrivals[...] = 0.0
         move_bins(bins, factor, arrivals[:, ::stride, ::stride])
+
+    def _arrivals(self, space):
+        return space[: self.groups * (2 * self.nodes + 1) * (self.polar + 1) * self.columns]
 
     def apply(self, space):
         """What leaves the interface.
@@ -126,42 +139,45 @@ class Application:
         ``space`` is overwritten, and holds what is returned.
         """
         there, here = space
-        there = there.reshape(self.groups, 2 * self.nodes + 1, -1)
-        here = here.reshape(there.shape)
+        azimuths = (self.groups, 2 * self.nodes + 1)
+        arrivals = self._arrivals(there).reshape(*azimuths, -1)
+        found = self._arrivals(here).reshape(arrivals.shape)
         for g in range(self.groups):
-            to_coefficients(self.matrix, there[g], here[g])
+            to_coefficients(self.matrix, arrivals[g], found[g])
         for stage, (kernel, rows) in enumerate(zip(self.kernels, self.rows, strict=True)):
+            found = found.reshape(*azimuths, -1, self.columns)
             if stage == 1:
-                tolled = here.reshape(*here.shape[:2], self.nodes + 1, -1, self.toll.shape[-1])
+                tolled = found.reshape(*found.shape[:3], -1, self.toll.shape[-1])
                 tolled *= self.toll[:, :, :, None]
-            shape = (self.groups, 2 * self.nodes + 1, len(rows), self.columns)
-            product = there.reshape(-1)[: math.prod(shape)].reshape(shape)
-            np.matmul(kernel, here.reshape(*shape[:2], self.nodes + 1, self.columns), out=product)
-            there, here = here, product
-        values = there.reshape(-1)[: self.groups * self.azimuths * len(self.rows[-1]) * self.columns]
+            shape = (*azimuths, len(rows), self.columns)
+            product = there[: math.prod(shape)].reshape(shape)
+            np.matmul(kernel, found, out=product)
+            there, here, found = here, there, product
+        values = there[: self.groups * self.azimuths * len(self.rows[-1]) * self.columns]
         values = values.reshape(self.groups, self.azimuths, -1)
         for g in range(self.groups):
-            to_values(self.to_azimuths, here[g].reshape(2 * self.nodes + 1, -1), values[g])
+            to_values(self.to_azimuths, found[g].reshape(2 * self.nodes + 1, -1), values[g])
         return values.reshape(self.groups, self.azimuths, len(self.rows[-1]), self.replicates, self.slots, -1)
 
     @property
     def multiplications(self):
         """Of one call of `apply`."""
-        polar, azimuths = self.nodes + 1, 2 * self.nodes + 1
-        kernels_of = sum(len(rows) * polar for rows in self.rows)
-        series = (azimuths * polar + self.azimuths * len(self.rows[-1])) // 2
+        azimuths = 2 * self.nodes + 1
+        kernels_of = sum(len(rows) * polar for rows, polar in zip(self.rows, self._incoming, strict=True))
+        series = (azimuths * self._incoming[0] + self.azimuths * len(self.rows[-1])) // 2
         return self.groups * self.columns * azimuths * (kernels_of + series)
 
     @property
     def memory(self):
         """Bytes that are shared, and bytes of a workspace with what `apply` needs besides."""
-        polar, azimuths = self.nodes + 1, 2 * self.nodes + 1
+        azimuths = 2 * self.nodes + 1
         groups = [self.groups, 1][: len(self.rows)]
-        tables = sum(g * azimuths * len(rows) * polar for g, rows in zip(groups, self.rows, strict=True))
+        sizes = list(zip(groups, self.rows, self._incoming, strict=True))
+        tables = sum(g * azimuths * len(rows) * polar for g, rows, polar in sizes)
         # The table of a block of rows, its nodes combined, its coefficients, and halves of them.
-        making = 4 * azimuths * max(rows.nodes_of(kernels.BLOCK) for rows in self.rows) * polar
+        making = 4 * azimuths * max(rows.nodes_of(kernels.BLOCK) * polar for _, rows, polar in sizes)
         series = 3 * azimuths * azimuths
-        own = 3 * self.groups * azimuths * polar * self.columns
+        own = 3 * self.groups * azimuths * self._most_polar * self.columns
         return _NUMBER * (tables + making + series), _NUMBER * own
 
 

@@ -83,7 +83,7 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
     state, filled, queues, batch, scratch, steps, lists, nodes = space
     last = kinds.shape[0] - 1
     channels = taus.shape[1]
-    distances = bins.shape[1] // 2
+    to_horizon, half_turn = bins.shape[2] // channels - 1, bins.shape[1] - 1
     slots = bins.shape[0] // keys.shape[0]
     most = steps.shape[0]
     stop_at = state[EVENTS] + budget
@@ -132,7 +132,7 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
             absorb(batch, n, taus[medium], scratch)
         if k == target[0] and side == target[1]:
             polar, around = scratch[POLAR : POLAR + 4], scratch[AROUND : AROUND + 4]
-            stencils(batch[X], batch[Y], batch[Z], batch[RATIO], n, distances, polar, around, nodes)
+            stencils(batch[X], batch[Y], batch[Z], batch[RATIO], n, to_horizon, half_turn, polar, around, nodes)
             deposit(batch[WEIGHT:], batch[SLOT], n, polar, around, nodes, bins)
         if slots > 1 and k == 0:
             _count_order(batch[SLOT], n, slots)

@@ -53,6 +53,7 @@ class CellRows:
     """Rows of classic cells: energies, less what `azimuth_factor` adds."""
 
     def __init__(self, plan, nodes):
+        self.nodes = nodes
         self.rows = plan.rows
         self.per_row = nodes // plan.rows
         angle = np.linspace(0.0, HALF_PI, nodes + 1)

@@ -10,6 +10,8 @@ from ..stages import ROUGH_CONDUCTOR, ROUGH_DIELECTRIC
 # What a ray from inside refracts into is alpha |1 - 1/n| wide: at least two nodes, that of width .05 at n = 1.5.
 # Near n = 1 the lobe of a fixed exit has far tails besides, which no width of the core tells.
 WIDE_LOBE = 0.0166
+# Below that, nodes half a degree apart leave a bias of the size of the noise of 10^8 paths.
+FINE_LOBE = 2.0 * WIDE_LOBE
 LEAST_CONTRAST = 0.15
 # A reflected lobe is wider. Above NARROW the exit's own operator is as good, and cheaper.
 WIDE_REFLECTION = 0.05
@@ -80,15 +82,28 @@ def choose(plan, side):
     )
 
 
+def finer(plan, variant):
+    """How many times as many polar angles arrivals need as all else has: the exit's lobes are narrowest in them."""
+    return 2 if variant.leaves == OUT and _width(plan, variant.exit) < FINE_LOBE else 1
+
+
 def _graze(plan):
     """Whether some light that is refracted by the mean top interface meets the next one at a grazing angle."""
     return bool((plan.light[:, 0] > MOST_SINE * float(plan.etas[0])).any())
 
 
 def _transmits_widely(plan, interface):
-    contrast = np.abs(1.0 - 1.0 / inner_index(plan, interface))
     rough = plan.kinds[interface] == ROUGH_DIELECTRIC
-    return bool(rough and plan.alphas[interface] * contrast >= WIDE_LOBE and contrast > LEAST_CONTRAST)
+    return bool(rough and _width(plan, interface) >= WIDE_LOBE and _contrast(plan, interface) > LEAST_CONTRAST)
+
+
+def _contrast(plan, interface):
+    return np.abs(1.0 - 1.0 / inner_index(plan, interface))
+
+
+def _width(plan, interface):
+    """Of what a ray from inside refracts into."""
+    return plan.alphas[interface] * _contrast(plan, interface)
 
 
 def _reflects_widely(plan, interface):

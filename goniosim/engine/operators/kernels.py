@@ -32,34 +32,34 @@ def coefficients(event, alpha, eta, kappa, rows, matrix, found):
     rows : goniosim.engine.operators.cells.Rows
     matrix : ndarray
         As `azimuths.cosines` yields it.
-    found : ndarray, shape (2 nodes + 1, number of rows, nodes + 1)
-        Overwritten; for ``nodes`` distances in 90 degrees.
+    found : ndarray, shape (azimuths, number of rows, incoming polar angles)
+        Overwritten; nodes are equally far apart, from 0 to 180 and from 0 to 90 degrees.
     """
-    nodes = found.shape[2] - 1
-    matrix = matrix * end_weights(2 * nodes)
-    table = np.empty((2 * nodes + 1) * rows.nodes_of(BLOCK) * (nodes + 1))
+    azimuths, _, polar = found.shape
+    matrix = matrix * end_weights(azimuths - 1)
+    table = np.empty(azimuths * rows.nodes_of(BLOCK) * polar)
     for first in range(0, len(rows), BLOCK):
         count = min(BLOCK, len(rows) - first)
-        shape = (2 * nodes + 1, rows.nodes_of(count), nodes + 1)
+        shape = (azimuths, rows.nodes_of(count), polar)
         # Contiguous, the last and smaller one too: the kernel is compiled once.
         some = table[: math.prod(shape)].reshape(shape)
-        tabulate(event, alpha, eta, kappa, rows.first_node(first), some)
+        tabulate(event, alpha, eta, kappa, rows.nodes, rows.first_node(first), some)
         block = rows.combine(first, some)
-        answer = np.empty((len(block), count * (nodes + 1)))
+        answer = np.empty((len(block), count * polar))
         to_coefficients(matrix, block.reshape(len(block), -1), answer)
         found[:, first : first + count] = answer.reshape(len(block), count, -1)
 
 
 @kernel
-def tabulate(event, alpha, eta, kappa, first, table):
-    """Fill ``table[azimuth, outgoing - first, incoming]`` with BSDF values at the nodes."""
+def tabulate(event, alpha, eta, kappa, outgoing, first, table):
+    """Fill ``table[azimuth, outgoing - first, incoming]`` with BSDF values; 90 degrees have ``outgoing`` distances."""
     nodes = table.shape[2] - 1
     sines = np.empty(nodes + 1)
     heights = np.empty(nodes + 1)
     for b in range(nodes + 1):
         sines[b], heights[b] = _polar(b, nodes)
     for i in range(table.shape[1]):
-        vs, vz = _polar(first + i, nodes)
+        vs, vz = _polar(first + i, outgoing)
         for j in range(table.shape[0]):
             s, c = sincos_turns(0.5 * j / (table.shape[0] - 1))
             row = table[j, i]

@@ -1,8 +1,7 @@
 """Nodes in polar angle and folded azimuth, with cubic Lagrange weights for what lies between them.
 
-Node (j, i) stands at the azimuth j h and the polar angle i h: ``bins[j, i, channel]``. Stencils have 4 x 4 nodes,
-one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi. With a ``stride`` of 2, values are
-looked up at every second node.
+Node (j, i) stands at the azimuth j h and the polar angle i g: ``bins[j, i, channel]``. Stencils have 4 x 4 nodes,
+one-sided at the pole and at grazing angles, mirrored at azimuths 0 and pi.
 """
 
 import math
@@ -23,11 +22,10 @@ def cubic(u, lowest, highest):
 
 
 @scalar
-def place(x, y, z, nodes, stride):
-    """Polar angle and folded azimuth of the direction (x, y, z), z >= 0, in steps of ``stride`` nodes of n + 1."""
-    per_radian = (nodes // stride) / HALF_PI
+def place(x, y, z, to_horizon, half_turn):
+    """Polar angle and folded azimuth of a direction, z >= 0, in nodes' distances: so many in 90 and in 180 degrees."""
     theta = arctan2_first_quadrant(math.sqrt(x * x + y * y), z)
-    return theta * per_radian, azimuth(abs(y), x) * per_radian
+    return theta * (to_horizon / HALF_PI), azimuth(abs(y), x) * (half_turn / math.pi)
 
 
 @scalar
@@ -38,39 +36,39 @@ def mirrored(j, last):
 
 
 @stage
-def stencils(x, y, z, ratios, n, nodes, polar, around, first):
+def stencils(x, y, z, ratios, n, to_horizon, half_turn, polar, around, first):
     """Find the nodes that ``n`` directions are spread over.
 
     Parameters
     ----------
-    nodes : int
-        Distances of 90 degrees.
+    to_horizon, half_turn : int
+        Distances of nodes in 90 degrees of polar angle, and in 180 of azimuth.
     polar, around : ndarray, shape (4, n)
         Overwritten: weights in polar angle; and in azimuth, times the ray's ratio.
     first : ndarray of int64, shape (2, n)
         Overwritten: the first node in polar angle, and in azimuth, which may lie beyond 0 or pi.
     """
-    _place(x, y, z, n, nodes, polar[0], around[0])
-    _weigh_polar(n, nodes, first[0], polar[0], polar[1], polar[2], polar[3])
-    _weigh_around(ratios, n, nodes, first[1], around[0], around[1], around[2], around[3])
+    _place(x, y, z, n, to_horizon, half_turn, polar[0], around[0])
+    _weigh_polar(n, to_horizon, first[0], polar[0], polar[1], polar[2], polar[3])
+    _weigh_around(ratios, n, half_turn, first[1], around[0], around[1], around[2], around[3])
 
 
 @stage
-def _place(x, y, z, n, nodes, u, v):
+def _place(x, y, z, n, to_horizon, half_turn, u, v):
     for i in range(n):
-        u[i], v[i] = place(x[i], y[i], z[i], nodes, 1)
+        u[i], v[i] = place(x[i], y[i], z[i], to_horizon, half_turn)
 
 
 @stage
-def _weigh_polar(n, nodes, first, a0, a1, a2, a3):
+def _weigh_polar(n, to_horizon, first, a0, a1, a2, a3):
     for i in range(n):
-        first[i], a0[i], a1[i], a2[i], a3[i] = cubic(a0[i], 0, nodes - 3)
+        first[i], a0[i], a1[i], a2[i], a3[i] = cubic(a0[i], 0, to_horizon - 3)
 
 
 @stage
-def _weigh_around(ratios, n, nodes, first, b0, b1, b2, b3):
+def _weigh_around(ratios, n, half_turn, first, b0, b1, b2, b3):
     for i in range(n):
-        first[i], w0, w1, w2, w3 = cubic(b0[i], -1, 2 * nodes - 1)
+        first[i], w0, w1, w2, w3 = cubic(b0[i], -1, half_turn - 1)
         b0[i] = w0 * ratios[i]
         b1[i] = w1 * ratios[i]
         b2[i] = w2 * ratios[i]

@@ -52,7 +52,7 @@ def find_stencils(x, y, z, n, values, weights, nodes):
 @stage
 def _find_places(x, y, z, n, nodes, u, v):
     for i in range(n):
-        u[i], v[i] = place(x[i], y[i], z[i], nodes, 1)
+        u[i], v[i] = place(x[i], y[i], z[i], nodes, 2 * nodes)
 
 
 @stage
