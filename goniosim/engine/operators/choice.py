@@ -8,10 +8,10 @@ from ..layout import DOWN, UP
 from ..stages import ROUGH_CONDUCTOR, ROUGH_DIELECTRIC
 
 # What a ray from inside refracts into is alpha |1 - 1/n| wide: at least two nodes, that of width .05 at n = 1.5.
-# Near n = 1 the lobe of a fixed exit has far tails besides, which no width of the core tells.
 WIDE_LOBE = 0.0166
 # Below that, nodes half a degree apart leave a bias of the size of the noise of 10^8 paths.
 FINE_LOBE = 2.0 * WIDE_LOBE
+# Near n = 1 the lobe of a fixed exit has far tails besides, which no width of the core tells.
 LEAST_CONTRAST = 0.15
 # A reflected lobe is wider. Above NARROW the exit's own operator is as good, and cheaper.
 WIDE_REFLECTION = 0.05
