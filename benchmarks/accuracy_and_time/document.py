@@ -76,7 +76,7 @@ directions spread evenly over the range of angles:
 
 {directions}
 
-**Nodes.** An operator bins light at nodes half a degree apart. What that may put a slice off by, as the run measured:
+**Nodes.** An operator bins light at nodes half a degree apart, or less. What that may put a slice off by, as measured:
 
 {nodes}
 

@@ -107,7 +107,7 @@ def _best(plan, side):
         reason = estimator.refusal(plan, (side,))
         if reason is None:
             return name, "; ".join(refused) or "the best for this stack"
-        refused.append(f"{name}: {reason}")
+        refused.append(f"not {name}: {reason}")
     raise AssertionError("the split walk serves every stack")
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import text
+from .trend import trend
 
 # Rows shown of a long list of checkpoints.
 MOST_ROWS = 6
@@ -43,9 +44,12 @@ def cost_lines(result):
             f"  {text.count(total)} rays in {text.duration(seconds)}: {text.rate(total / seconds)}, "
             f"{text.rate(total / cpu_seconds, per='CPU-second')}."
         )
+        courses = [trend(result, name) for name in noise]
+        hardest = max(courses, key=lambda course: course.seconds_for(2.0))
+        times = hardest.rays_for(2.0)
         lines.append(
-            f"  Half the noise takes four times the rays: {text.count(4.0 * result.rays.max())} "
-            f"per direction, about {text.duration(4.0 * seconds)} on this machine."
+            f"  Half the noise takes {times:.2g} times the rays: {text.count(round(times * result.rays.max()))} "
+            f"per direction, {hardest.about} {text.duration(hardest.seconds_for(2.0))} on this machine."
         )
     return lines
 
