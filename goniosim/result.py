@@ -246,6 +246,8 @@ class Result:
         ``goniosim_version``, ...).
     target_reached : bool or None
         Whether the accuracy that the scene asks for was reached; None if it asks for rays.
+    state : bytes or None
+        Of a partial one, what `goniosim.engine.simulate` goes on from.
     """
 
     config_yaml: str
@@ -264,6 +266,7 @@ class Result:
     effects: dict[str, bool]
     provenance: dict[str, str]
     target_reached: bool | None = None
+    state: bytes | memoryview | None = None
 
     @property
     def estimator(self) -> str:

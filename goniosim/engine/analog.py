@@ -2,6 +2,8 @@
 
 import time
 
+import numpy as np
+
 from ..sums import Paths, sum_and_error
 from .estimate import Estimate, mean_and_error, moments
 from .faint import faint_weights
@@ -110,17 +112,34 @@ class AnalogRun:
     def reduce(self, work, report, tally):
         """Add up a work unit."""
         direction = work.direction
-        # After a stop, units of a direction count only as far as none is missing before them.
-        if report is not None and work.number == self._units[direction]:
-            self._units[direction] += 1
-            self.tallies[direction].histogram += tally.histogram
-            self.ledgers[direction].extend(tally.ledgers.copy())
-            self.part_rays[direction].extend(report.part_rays)
-            if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
-                self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
-                self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
-            self.spending.book(direction, report.events, report.cpu_seconds)
+        self._units[direction] += 1
+        self.tallies[direction].histogram += tally.histogram
+        self.ledgers[direction].extend(tally.ledgers.copy())
+        self.part_rays[direction].extend(report.part_rays)
+        if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
+            self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
+            self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
+        self.spending.book(direction, report.events, report.cpu_seconds)
         tally.clear()
+
+    def state(self):
+        """What has been added up, as a tree for `packing.pack`."""
+        return {
+            "histograms": [tally.histogram for tally in self.tallies],
+            "units": self._units,
+            "ledgers": [np.array(parts) for parts in self.ledgers],
+            "part_rays": self.part_rays,
+            "spending": self.spending.state(),
+        }
+
+    def restore(self, state):
+        """Go on from such a tree; pieces of work are handed out anew."""
+        for tally, histogram in zip(self.tallies, state["histograms"], strict=True):
+            tally.histogram[...] = histogram
+        self._units = state["units"]
+        self.ledgers = [list(parts) for parts in state["ledgers"]]
+        self.part_rays = state["part_rays"]
+        self.spending.restore(state["spending"])
 
     def finish_round(self, direction):
         """Nothing is left to do at a checkpoint."""

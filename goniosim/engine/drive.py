@@ -5,6 +5,7 @@ import threading
 import time
 from collections import deque
 
+from .journal import Journal
 from .ordered import in_order
 from .runs import in_flight
 
@@ -18,13 +19,17 @@ class Drive:
     stop : threading.Event
     progress : callable
         Called as ``progress(done_rays, total_rays)``.
+
+    Attributes
+    ----------
+    done : int
+        Light paths that are through.
     """
 
     def __init__(self, threads, stop, progress):
         self._threads, self._stop = threads, stop
         self._progress, self._total_rays = progress, 0
-        self._done = 0
-        self.seconds = 0.0
+        self.done = 0
         self._started = time.perf_counter()
 
     @property
@@ -33,15 +38,20 @@ class Drive:
         return self._stop.is_set()
 
     def now(self):
-        """Seconds since the beginning."""
+        """Seconds since the beginning, with those before an interruption."""
         return time.perf_counter() - self._started
+
+    def go_on(self, seconds, done):
+        """Count time and light paths from where an interrupted run has been."""
+        self._started -= seconds
+        self.done += done
 
     def expect(self, rays):
         """So many rays are to come, over all runs and directions, besides those that are through."""
-        self._total_rays = self._done + rays
+        self._total_rays = self.done + rays
 
-    def do(self, run, works, note=None, stop=None):
-        """Do pieces of work of a run.
+    def do(self, run, works, note=None, stop=None, first=0, keep=None):
+        """Do pieces of work of a run; once stopped, none is added up behind one that was given up.
 
         Parameters
         ----------
@@ -51,10 +61,16 @@ class Drive:
             Called as ``note(run, direction)`` at every checkpoint.
         stop : threading.Event, optional
             In the place of the drive's own.
+        first : int
+            Pieces that were added up before an interruption.
+        keep : callable, optional
+            Called as ``keep(number, stopped)`` after each piece, with how many are added up: what they add up to may
+            be kept then. After a stop, once.
         """
         stop = stop or self._stop
+        left = works[first:]
         local = threading.local()
-        buffers = [run.buffer() for _ in range(in_flight(run.waiting, self._threads, len(works)))]
+        buffers = [run.buffer() for _ in range(in_flight(run.waiting, self._threads, len(left)))]
 
         def work(one, buffer):
             if stop.is_set():
@@ -64,24 +80,33 @@ class Drive:
             return run.work(one, buffer, local.workspace, stop)
 
         noted = set()
+        for one in works[:first]:
+            _remember(noted, one)
+        added, given_up = first, False
 
         def reduce(one, outcome, buffer):
+            nonlocal added, given_up
+            given_up |= outcome is None
+            if given_up:
+                return
             run.reduce(one, outcome, buffer)
-            if outcome is not None and not one.coarse:
-                self._done += one.rays
-            self.seconds = time.perf_counter() - self._started
-            if one.last and not stop.is_set():
+            added += 1
+            if not one.coarse:
+                self.done += one.rays
+            _remember(noted, one)
+            if one.last:
                 _finish(run, one.direction, note)
-                noted.add(one.direction)
-            elif outcome is not None:
-                noted.discard(one.direction)
+            if keep is not None and not stop.is_set():
+                keep(added, False)
 
         def tick():
             # From the first call on there is something to keep.
             if run.gathered:
-                self._progress(self._done, max(self._total_rays, self._done))
+                self._progress(self.done, max(self._total_rays, self.done))
 
-        in_order(works, work, buffers, reduce, self._threads, stop, tick)
+        in_order(left, work, buffers, reduce, self._threads, stop, tick)
+        if keep is not None and stop.is_set():
+            keep(added, True)
         for direction in sorted({one.direction for one in works} - noted):
             _finish(run, direction, note)
 
@@ -100,7 +125,7 @@ class Drive:
         limit : Limit
             Of all runs together.
         do : callable
-            Called as ``do(run, works)``.
+            Called as ``do(run, works)``; returns the seconds that it took.
 
         Returns
         -------
@@ -115,19 +140,29 @@ class Drive:
                 if self.stopped or not limit.allows(run, directions, number):
                     missed = True
                     continue
-                started = self.now()
-                do(run, run.round(number, directions))
+                seconds = do(run, run.round(number, directions))
+                if self.stopped:
+                    missed = True
+                    continue
                 other = instead(run) if number == 0 else None
                 if other is not None:
                     waiting.append((other, directions))
                     continue
-                limit.took(run, self.now() - started, len(directions) * run.rays_of_round(number))
+                limit.took(run, seconds, len(directions) * run.rays_of_round(number))
                 verdicts = {m: judge(run, m) for m in directions}
                 missed |= None in verdicts.values()
                 if False in verdicts.values():
                     turn.append((run, [m for m in directions if verdicts[m] is False]))
             number += 1
         return not missed
+
+
+def _remember(noted, one):
+    """A piece of work with a checkpoint behind it, or one that asks for another."""
+    if one.last:
+        noted.add(one.direction)
+    else:
+        noted.discard(one.direction)
 
 
 def _finish(run, direction, note):
@@ -145,9 +180,11 @@ class Limit:
         Of each direction of a run.
     max_seconds : float or None
         Of wall-clock time of all runs together, from now on.
+    journal : Journal, optional
     """
 
-    def __init__(self, max_rays, max_seconds):
+    def __init__(self, max_rays, max_seconds, journal=None):
+        self._journal = journal or Journal()
         self._max_rays = math.inf if max_rays is None else max_rays
         self._end = math.inf if max_seconds is None else time.perf_counter() + max_seconds
         self._pace = {}
@@ -158,8 +195,9 @@ class Limit:
 
     def allows(self, run, directions, number):
         """Whether a run may begin another round of some directions; the first one it always may."""
-        if number == 0:
-            return True
+        return number == 0 or self._journal.decide(lambda: self._leave_room(run, directions, number))
+
+    def _leave_room(self, run, directions, number):
         paths = run.rays_of_round(number)
         predicted = self._pace[run] * len(directions) * paths
         return time.perf_counter() + predicted <= self._end and all(

@@ -138,8 +138,6 @@ class ReplicatedRun:
 
     def reduce(self, work, report, buffer):
         """Add up replicates."""
-        if report is None:
-            return
         start = time.thread_time()
         size, found = work.rays // len(work.replicates), buffer[: len(work.replicates)]
         if work.coarse:
@@ -157,6 +155,22 @@ class ReplicatedRun:
         change = (coarse.mean(axis=0) - self._first.pop(direction)).sum(axis=0)
         self.bias[direction] = noise(self._plan, direction, unfold(change, self._plan.columns))
 
+    def state(self):
+        """What has been added up, as a tree for `packing.pack`."""
+        return {
+            "sums": [sums.state() for sums in self._sums],
+            "first": _by_direction(self._first),
+            "bias": _by_direction(self.bias),
+            "spending": self.spending.state(),
+        }
+
+    def restore(self, state):
+        """Go on from such a tree; pieces of work are handed out anew."""
+        for sums, values in zip(self._sums, state["sums"], strict=True):
+            sums.restore(values)
+        self._first, self.bias = (dict(state[name]) for name in ("first", "bias"))
+        self.spending.restore(state["spending"])
+
     def finish_round(self, direction):
         """Add a round up, or what there is of it."""
         self._sums[direction].finish_round()
@@ -167,6 +181,11 @@ class ReplicatedRun:
         energy, stderr = sums.slices(view)
         bias = self.bias.get(direction) if order is None else None
         return Estimate(energy, stderr, sums.total_stderr(view), sums.count, batches=sums.batches(view), bias=bias)
+
+
+def _by_direction(found):
+    """Pairs: the keys of a packed tree are strings."""
+    return [list(pair) for pair in found.items()]
 
 
 def _views(plan, sides):

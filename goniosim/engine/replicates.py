@@ -100,6 +100,29 @@ class Replicates:
             self.count += count
         self._begin(0)
 
+    def state(self):
+        """What has been added up, as a tree for `packing.pack`."""
+        return {
+            "sums": [self._cells.state(), self._totals.state()],
+            "batches": self._batches,
+            "paths": self.paths,
+            "count": self.count,
+            "size": self._size,
+            "round": [self._round.state(), self._round_totals.state()],
+            "round_blocks": self._round_blocks,
+        }
+
+    def restore(self, state):
+        """Go on from such a tree."""
+        for each, values in zip((self._cells, self._totals), state["sums"], strict=True):
+            each.restore(values)
+        self._batches, self.paths, self.count, self._size = (
+            state[name] for name in ("batches", "paths", "count", "size")
+        )
+        for each, values in zip((self._round, self._round_totals), state["round"], strict=True):
+            each.restore(values)
+        self._round_blocks = state["round_blocks"]
+
     def slices(self, view):
         """Energy and its standard error of a view, each of shape (channels, rows, columns)."""
         energy, variance = (unfold(each[view], self._columns) for each in (self._cells.mean, self._cells.variance))
@@ -134,6 +157,12 @@ class _Sum:
         self.weight = 0.0
         self.mean = np.zeros(shape)
         self.variance = np.zeros(shape)
+
+    def state(self):
+        return [self.weight, self.mean, self.variance]
+
+    def restore(self, state):
+        self.weight, self.mean, self.variance = state
 
     def add(self, mean, variance, weight):
         self.weight += weight

@@ -71,6 +71,15 @@ class Spending:
         self.events += other.events
         self.cpu_seconds += other.cpu_seconds
 
+    def state(self):
+        """As a tree for `packing.pack`."""
+        return {"events": self.events, "cpu_seconds": self.cpu_seconds, "checkpoints": self.checkpoints}
+
+    def restore(self, state):
+        """Go on from such a tree."""
+        self.events, self.cpu_seconds = state["events"], state["cpu_seconds"]
+        self.checkpoints = state["checkpoints"]
+
     def note(self, direction, rays, seconds, errors):
         """Note a checkpoint.
 

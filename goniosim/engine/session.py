@@ -1,4 +1,8 @@
-"""All runs of one simulation: which estimators, in which order, and how far."""
+"""All runs of one simulation: which estimators, in which order, and how far.
+
+An interrupted session goes on by going the same way again: what was decided is looked up in a journal, work that is
+through is left out, and the sums are taken over where the next piece is due.
+"""
 
 import itertools
 import threading
@@ -12,6 +16,8 @@ from .drive import Drive, Limit
 from .estimators import pilot
 from .estimators.choose import ANALOG, AUTO, Choice, choose, next_best
 from .gain import gains, in_words
+from .journal import Journal
+from .packing import pack
 from .plan import Plan
 from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 from .unit import child_key
@@ -32,6 +38,10 @@ class Session:
     simulation : goniosim.scene simulation
         What is asked for.
     drive : goniosim.engine.drive.Drive
+    checkpoint : callable, optional
+        Called with the session after each piece of work, when `state` may be looked at.
+    resumed : dict, optional
+        What `packing.unpack` makes of the `state` in which a session of the same simulation was interrupted.
     choices : list of goniosim.engine.estimators.choose.Choice
     runs : list of AnalogRun or ReplicatedRun
         One for each choice; of different ways out.
@@ -39,17 +49,28 @@ class Session:
         Whose energy balance is told.
     reached : bool or None
         Whether all directions are as accurate as asked for; None without a target.
+    left : bytes or None
+        `state` in which it was stopped.
     """
 
     plan: Plan
     simulation: object
     drive: Drive
+    checkpoint: object = None
+    resumed: dict | None = None
     choices: list = field(default_factory=list)
     runs: list = field(default_factory=list)
     audit: AnalogRun | None = None
     reached: bool | None = None
+    left: bytes | None = None
+    _ready: set = field(default_factory=set)
     _spent: dict = field(default_factory=dict)
+    _took: list = field(default_factory=list)
+    _calls: int = 0
+    _current: int = 0
+    _began: float | None = None
     _from: float = 0.0
+    _added: int = 0
 
     @property
     def rays(self):
@@ -71,24 +92,39 @@ class Session:
 
     def run(self):
         """Do all runs."""
-        asked, limit = self.simulation, Limit(self.simulation.max_rays, self.simulation.max_time)
-        self.choices = choose(self.plan, asked.estimator, asked.rays)
-        if asked.target is not None and asked.estimator == AUTO and self.choices[0].sides:
-            self._reconsider()
-        self.runs = [choice.start(self.plan, asked.seed) for choice in self.choices]
-        for run in self.runs:
-            self._begin(run)
+        asked, before = self.simulation, self.resumed or {"journal": (), "seconds": 0.0, "done": 0}
+        self._journal = Journal(before["journal"])
+        self.drive.go_on(before["seconds"], before["done"])
+        self._choose()
         if asked.target is None:
-            self.drive.expect(len(self.plan.theta_deg) * len(self.runs) * asked.rays)
+            self.drive.expect(len(self.plan.theta_deg) * len(self.runs) * asked.rays - before["done"])
             self._shoot(asked.rays)
         else:
+            seconds = None if asked.max_time is None else asked.max_time - before["seconds"]
+            limit = Limit(asked.max_rays, seconds, self._journal)
             self.reached = self.drive.reach(self.runs, self._judge, self._instead, limit, self._do)
-        self.audit = next((run for run in self.runs if run.audits), None) or self._audited()
+        if self.drive.stopped and not self.finished and self.left is None:
+            # Between two pieces of work.
+            self.left = self.state()
+        # Short, if somebody waits for an end.
+        rays = LEAST_AUDIT_RAYS if self.drive.stopped else AUDIT_RAYS
+        self.audit = next((run for run in self.runs if run.audits), None) or self._audited(rays)
+
+    def _choose(self):
+        asked = self.simulation
+        self.choices = choose(self.plan, asked.estimator, asked.rays)
+        if asked.target is not None and asked.estimator == AUTO and self.choices[0].sides:
+            reason = self._journal.decide(self._is_easy)
+            if reason is not None:
+                sides = tuple(sorted(side for choice in self.choices for side in choice.sides))
+                self.choices = [Choice(ANALOG, sides, reason)]
+        self.runs = [choice.start(self.plan, asked.seed) for choice in self.choices]
 
     def _begin(self, run):
         began = self.drive.now()
         run.prepare()
-        self._spent[run] = self.drive.now() - began
+        self._ready.add(run)
+        self._spent[run] = self._spent.get(run, 0.0) + self.drive.now() - began
 
     def _shoot(self, rays):
         """Do all runs, round by round, so that an interruption leaves something of every component."""
@@ -98,26 +134,90 @@ class Session:
                     self._do(run, works)
 
     def _do(self, run, works):
-        began = self.drive.now()
-        self._from = began - self._spent[run]
-        self.drive.do(run, works, self._note)
-        self._spent[run] += self.drive.now() - began
+        """Do pieces of work, unless they were done before an interruption; returns the seconds they took."""
+        number, before = self._calls, self.resumed
+        self._calls += 1
+        if before is not None and number < before["calls"]:
+            self._took.append(before["took"][number])
+            return self._took[-1]
+        first, since = 0, 0.0
+        if before is not None:
+            self._take_over(before)
+            first, since = before["added"], before["within"]
+        if run not in self._ready:
+            self._begin(run)
+        self._current, self._added = number, first
+        self._began = self.drive.now() - since
+        self._from = self._began - self._spent[run]
+        self.drive.do(run, works, self._note, first=first, keep=self._keep)
+        self._took.append(self.drive.now() - self._began)
+        self._spent[run] += self._took[-1]
+        self._current, self._added, self._began = number + 1, 0, None
+        return self._took[-1]
 
-    def _audited(self):
-        """Where all energy goes, by an analog run that has no slices; short, if somebody waits for an end."""
+    def _take_over(self, state):
+        for run, values, spent in zip(self.runs, state["runs"], state["spent"], strict=True):
+            run.restore(values)
+            self._spent[run] = spent
+        self.resumed = None
+
+    def _keep(self, added, stopped):
+        self._added = added
+        if stopped:
+            self.left = self.left or self.state()
+        elif self.checkpoint is not None:
+            self.checkpoint(self)
+
+    def state(self):
+        """All that is needed to go on after the piece of work that was added up last, as bytes for `resumed`."""
+        return pack(
+            {
+                "journal": self._journal.entries,
+                "seconds": self.drive.now(),
+                "done": self.drive.done,
+                "calls": self._current,
+                "took": self._took,
+                "added": self._added,
+                "within": 0.0 if self._began is None else self.drive.now() - self._began,
+                "spent": [self._spent.get(run, 0.0) for run in self.runs],
+                "choices": [[choice.estimator, choice.sides, choice.reason] for choice in self.choices],
+                "runs": [run.state() for run in self.runs],
+            }
+        )
+
+    def look_at(self, state):
+        """Fill `runs` with what is known in a state, without going on.
+
+        Parameters
+        ----------
+        state : dict
+            As `resumed`.
+        """
+        self.choices = [Choice(estimator, tuple(sides), reason) for estimator, sides, reason in state["choices"]]
+        self.runs = [choice.start(self.plan, self.simulation.seed) for choice in self.choices]
+        self.reached = None if self.simulation.target is None else False
+        self._take_over(state)
+        for run in self.runs:
+            self._from = self.drive.now() - self._spent[run]
+            for direction in range(len(self.plan.theta_deg)):
+                run.finish_round(direction)
+                noted = run.spending.checkpoints[direction]
+                if run.rays[direction] and (not noted or noted[-1][0] != run.rays[direction]):
+                    self._note(run, direction)
+        self.audit = next((run for run in self.runs if run.audits), None) or self._audited(LEAST_AUDIT_RAYS)
+
+    def _audited(self, rays):
+        """Where all energy goes, by an analog run that has no slices."""
         run = AnalogRun(self.plan.in_one_cell(), self.simulation.seed)
         run.prepare()
-        rays = LEAST_AUDIT_RAYS if self.drive.stopped else AUDIT_RAYS
         for works in run.rounds(min(self.simulation.most_rays, rays)):
             self.drive.do(run, works, stop=threading.Event())
         return run
 
-    def _reconsider(self):
-        """Take the analog walk where it is through before others have begun."""
+    def _is_easy(self):
+        """Why the analog walk is taken, where it is through before others have begun; None if it is not."""
         rays, events = pilot.analog_rays(self.plan, self.simulation.seed, self.simulation.target, self.drive)
-        if pilot.is_enough(self.choices, events):
-            sides = tuple(sorted(side for choice in self.choices for side in choice.sides))
-            self.choices = [Choice(ANALOG, sides, f"a pilot says that {rays.max():.1g} rays are enough")]
+        return f"a pilot says that {rays.max():.1g} rays are enough" if pilot.is_enough(self.choices, events) else None
 
     def _note(self, run, direction):
         seconds = self.drive.now() - self._from
@@ -125,6 +225,9 @@ class Session:
 
     def _judge(self, run, direction):
         """Whether a direction is as accurate as asked for; None if its nodes will not let it be."""
+        return self._journal.decide(lambda: self._verdict(run, direction))
+
+    def _verdict(self, run, direction):
         target = self.simulation.target
         if assembly.worst_error(self.plan, run, direction, target.of) <= target.relative_error:
             return True
@@ -132,16 +235,20 @@ class Session:
 
     def _instead(self, run):
         """The next best run for what one cannot reach, because of its nodes; it has a key of its own."""
-        target, number = self.simulation.target, self.runs.index(run)
-        floor = max(assembly.floor(self.plan, run, m) for m in range(len(self.plan.theta_deg)))
-        if self.simulation.estimator != AUTO or self.drive.stopped or floor < MOST_OF_TARGET * target.relative_error:
+        number, reason = self.runs.index(run), self._journal.decide(lambda: self._why_not(run))
+        if reason is None:
             return None
-        reason = f"{run.name}: its nodes may be off by {100.0 * floor:.2g} %, which leaves no room in the target"
         self.choices[number] = next_best(self.plan, run.sides, run.name, reason)
         other = self.choices[number].start(self.plan, child_key(self.simulation.seed, BRANCH))
         self.runs[number] = other
-        self._begin(other)
         # What it took to find out counts.
-        self._spent[other] += self._spent.pop(run)
+        self._spent[other] = self._spent.pop(run, 0.0)
         other.spending.take_over(run.spending)
         return other
+
+    def _why_not(self, run):
+        target = self.simulation.target
+        floor = max(assembly.floor(self.plan, run, m) for m in range(len(self.plan.theta_deg)))
+        if self.simulation.estimator != AUTO or floor < MOST_OF_TARGET * target.relative_error:
+            return None
+        return f"{run.name}: its nodes may be off by {100.0 * floor:.2g} %, which leaves no room in the target"

@@ -12,15 +12,17 @@ from ..result import Result
 from ..scene import CHANNELS, effects, with_arguments
 from . import assembly, estimate
 from .blas import one_thread
+from .checkpoints import Checkpoints
 from .direct import direct_reflection
 from .drive import Drive
 from .memory import require_memory, threads_of
+from .packing import unpack
 from .plan import make_plan
 from .probe import warm_up
 from .session import Session
 
 
-def simulate(scene, *, progress=None, stop=None, **given):
+def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, resume=None, **given):
     """Shoot rays at a scene and return its slices with their error bars.
 
     Parameters
@@ -32,6 +34,13 @@ def simulate(scene, *, progress=None, stop=None, **given):
     stop : threading.Event, optional
         When set, tracing ends within a second; the result holds the finished work units and
         has the status ``partial``. Ctrl-C itself is left to the caller.
+    checkpoint : callable, optional
+        Called with a partial `Result` from time to time, from this thread, while others go on.
+    every : float
+        Seconds between two such calls, at least; more where they would take more than a hundredth of the time.
+    resume : bytes-like, optional
+        ``state`` of a partial result of the same scene and simulation, to go on from. What comes out then is the same
+        to the last bit as without the interruption, times aside.
     **given
         In the place of what the scene says: ``rays``, ``seed``, ``threads`` and the others of
         `goniosim.scene.with_arguments`. The result does not depend on ``threads``; the default
@@ -48,14 +57,16 @@ def simulate(scene, *, progress=None, stop=None, **given):
     goniosim.errors.ResourceError
         If it does not fit into the memory that is free.
     goniosim.errors.StoppedError
-        If it was stopped before any work unit was finished.
+        If it was stopped before any work unit was finished, or before an interrupted run went on.
+    ValueError
+        If ``resume`` is not such a state.
     """
     scene = with_arguments(scene, given)
     require_memory(scene)
     try:
         # Not around single products: the library's own threads spin for a while after each.
         with one_thread():
-            return _simulate(scene, make_plan(scene), granted_threads(threads_of(scene)), progress, stop)
+            return _simulate(scene, progress, stop or threading.Event(), checkpoint, every, resume)
     except MemoryError as error:
         raise ResourceError(
             "memory ran out: another process took it, or a limit is lower than it looks; "
@@ -63,15 +74,27 @@ def simulate(scene, *, progress=None, stop=None, **given):
         ) from error
 
 
-def _simulate(scene, plan, threads, progress, stop):
-    stop = stop or threading.Event()
+def _simulate(scene, progress, stop, checkpoint, every, resume):
+    before = None if resume is None else unpack(resume)
+    plan, threads = make_plan(scene), granted_threads(threads_of(scene))
     warm_up(scene)
     direct = _integrate_direct(plan, threads, stop)
-    drive = Drive(threads, stop, _progress_of(scene, progress))
-    session = Session(plan, scene.simulation, drive)
+
+    def keep(state):
+        looked_at = Session(plan, scene.simulation, Drive(1, threading.Event(), lambda done, total: None))
+        looked_at.look_at(unpack(state))
+        if any(looked_at.rays):
+            checkpoint(_result(scene, plan, threads, direct, looked_at, state))
+
+    keeping = None if checkpoint is None else Checkpoints(every, keep)
+    session = Session(plan, scene.simulation, Drive(threads, stop, _progress_of(scene, progress)), keeping, before)
     session.run()
     if not any(session.rays):
         raise StoppedError("stopped before the first rays were through: there is nothing to keep")
+    return _result(scene, plan, threads, direct, session, session.left)
+
+
+def _result(scene, plan, threads, direct, session, state):
     found = assembly.components(plan, session.runs, direct)
     return Result(
         config_yaml=scene.to_yaml(),
@@ -90,6 +113,7 @@ def _simulate(scene, plan, threads, progress, stop):
         effects={effect.name: effect.active for effect in effects(scene)},
         provenance={**provenance(threads), **session.provenance},
         target_reached=session.reached,
+        state=None if session.finished else state,
     )
 
 

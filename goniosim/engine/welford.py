@@ -21,6 +21,14 @@ class Welford:
         self.count += 1
         _take_in(np.ascontiguousarray(values).reshape(-1), self.count, self.mean.reshape(-1), self._squares.reshape(-1))
 
+    def state(self):
+        """As a tree for `packing.pack`."""
+        return [self.count, self.mean, self._squares]
+
+    def restore(self, state):
+        """Go on from such a tree."""
+        self.count, self.mean, self._squares = state
+
     def variance_of_mean(self):
         """Squared standard error of the mean."""
         return self._squares / (self.count * (self.count - 1.0))
