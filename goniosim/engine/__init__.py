@@ -3,10 +3,11 @@
 from .estimators.choose import estimators_of
 from .memory import memory_needed, require_memory, shortage, threads_of
 from .probe import Probe, probe, warm_up
-from .simulate import simulate
+from .simulate import checked_state, simulate
 
 __all__ = [
     "Probe",
+    "checked_state",
     "estimators_of",
     "memory_needed",
     "probe",

@@ -7,6 +7,8 @@ import numpy as np
 from ..sums import Paths, sum_and_error
 from .estimate import Estimate, mean_and_error, moments
 from .faint import faint_weights
+from .layout import N_LEDGER
+from .packing import array
 from .runs import Spending, Work
 from .schedule import MOST_LEDGERS, Schedule
 from .unit import Tally, Workspace, unit_key
@@ -135,10 +137,11 @@ class AnalogRun:
     def restore(self, state):
         """Go on from such a tree; pieces of work are handed out anew."""
         for tally, histogram in zip(self.tallies, state["histograms"], strict=True):
-            tally.histogram[...] = histogram
-        self._units = state["units"]
-        self.ledgers = [list(parts) for parts in state["ledgers"]]
-        self.part_rays = state["part_rays"]
+            tally.histogram[...] = array(histogram, tally.histogram.shape)
+        self._units = list(state["units"])
+        shape = (-1, N_LEDGER, self._plan.n_distinct)
+        self.ledgers = [list(array(parts, shape)) if len(parts) else [] for parts in state["ledgers"]]
+        self.part_rays = [list(sizes) for sizes in state["part_rays"]]
         self.spending.restore(state["spending"])
 
     def finish_round(self, direction):

@@ -14,7 +14,7 @@ class Checkpoints:
     every : float
         Seconds from one to the next, at least.
     keep : callable
-        Called with the state of the session.
+        Called with the session.
     """
 
     def __init__(self, every, keep):
@@ -26,6 +26,6 @@ class Checkpoints:
         began = time.monotonic()
         if began < self._due:
             return
-        self._keep(session.state())
+        self._keep(session)
         now = time.monotonic()
         self._due = now + max(self._every, (now - began) / MOST)

@@ -64,6 +64,22 @@ def unpack(content):
         raise ValueError(f"not the state of a run: {error}") from error
 
 
+def array(value, shape, dtype=float):
+    """A copy of an array of a tree; a ValueError if it is none of that shape and type.
+
+    Parameters
+    ----------
+    value : object
+    shape : tuple of int
+        -1 for any length.
+    dtype : type
+    """
+    fits = isinstance(value, np.ndarray) and value.dtype == dtype and value.ndim == len(shape)
+    if not fits or any(length not in (-1, found) for length, found in zip(shape, value.shape, strict=True)):
+        raise ValueError(f"not the state of this run: an array of shape {shape} is missing")
+    return np.array(value, order="C")
+
+
 def _without_arrays(tree, arrays):
     if isinstance(tree, np.ndarray):
         arrays.append(tree)

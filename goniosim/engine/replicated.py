@@ -7,6 +7,7 @@ import numpy as np
 
 from ..slices import PARAMETRIZATIONS
 from .estimate import Estimate, noise
+from .packing import array
 from .replicates import Replicates, unfold
 from .rounds import REPLICATES as N_REPLICATES
 from .rounds import chunks, sizes
@@ -168,7 +169,9 @@ class ReplicatedRun:
         """Go on from such a tree; pieces of work are handed out anew."""
         for sums, values in zip(self._sums, state["sums"], strict=True):
             sums.restore(values)
-        self._first, self.bias = (dict(state[name]) for name in ("first", "bias"))
+        shape = (self._slots, *self._shape)
+        self._first = {int(direction): array(values, shape) for direction, values in state["first"]}
+        self.bias = {int(direction): float(value) for direction, value in state["bias"]}
         self.spending.restore(state["spending"])
 
     def finish_round(self, direction):

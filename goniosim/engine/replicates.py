@@ -9,6 +9,7 @@ import numpy as np
 
 from ..sums import block_sums
 from .mending import mended
+from .packing import array
 from .rounds import FEWEST_REPLICATES, REPLICATES
 from .welford import FoldedBlocks, Welford
 
@@ -116,12 +117,13 @@ class Replicates:
         """Go on from such a tree."""
         for each, values in zip((self._cells, self._totals), state["sums"], strict=True):
             each.restore(values)
-        self._batches, self.paths, self.count, self._size = (
-            state[name] for name in ("batches", "paths", "count", "size")
-        )
-        for each, values in zip((self._round, self._round_totals), state["round"], strict=True):
-            each.restore(values)
-        self._round_blocks = state["round_blocks"]
+        self.paths, self.count, self._size = (int(state[name]) for name in ("paths", "count", "size"))
+        blocks = self._blocks_of.shape(self._cells.mean.shape)
+        self._batches = array(state["batches"], (REPLICATES, *blocks)) if self.count else 0.0
+        shapes = self._cells.mean.shape, self._totals.mean.shape
+        for each, values, shape in zip((self._round, self._round_totals), state["round"], shapes, strict=True):
+            each.restore(values, shape)
+        self._round_blocks = [array(values, blocks) for values in state["round_blocks"]]
 
     def slices(self, view):
         """Energy and its standard error of a view, each of shape (channels, rows, columns)."""
@@ -162,7 +164,9 @@ class _Sum:
         return [self.weight, self.mean, self.variance]
 
     def restore(self, state):
-        self.weight, self.mean, self.variance = state
+        weight, mean, variance = state
+        self.weight = float(weight)
+        self.mean, self.variance = array(mean, self.mean.shape), array(variance, self.mean.shape)
 
     def add(self, mean, variance, weight):
         self.weight += weight

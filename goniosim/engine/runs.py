@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .packing import array
+
 
 @dataclass(frozen=True)
 class Work:
@@ -77,8 +79,9 @@ class Spending:
 
     def restore(self, state):
         """Go on from such a tree."""
-        self.events, self.cpu_seconds = state["events"], state["cpu_seconds"]
-        self.checkpoints = state["checkpoints"]
+        self.events = array(state["events"], self.events.shape, np.int64)
+        self.cpu_seconds = array(state["cpu_seconds"], self.cpu_seconds.shape)
+        self.checkpoints = [[tuple(row) for row in rows] for rows in state["checkpoints"]]
 
     def note(self, direction, rays, seconds, errors):
         """Note a checkpoint.

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..provenance import version_of
 from . import assembly
 from .analog import AnalogRun
 from .drive import Drive, Limit
@@ -22,6 +23,8 @@ from .plan import Plan
 from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 from .unit import child_key
 
+# Of `Session.state`, to be raised whenever one of before would not lead to the same bits.
+VERSION = [1, version_of("goniosim")]
 # Child of the seed's key, for a run that takes the place of another.
 BRANCH = 5
 # What nodes may be off by is no more than that share of a target, or the noise would have to be less than half of it.
@@ -39,9 +42,9 @@ class Session:
         What is asked for.
     drive : goniosim.engine.drive.Drive
     checkpoint : callable, optional
-        Called with the session after each piece of work, when `state` may be looked at.
+        Called with the session after each piece of work, when its `state` may be kept.
     resumed : dict, optional
-        What `packing.unpack` makes of the `state` in which a session of the same simulation was interrupted.
+        The `state` in which a session of the same simulation was interrupted.
     choices : list of goniosim.engine.estimators.choose.Choice
     runs : list of AnalogRun or ReplicatedRun
         One for each choice; of different ways out.
@@ -50,7 +53,7 @@ class Session:
     reached : bool or None
         Whether all directions are as accurate as asked for; None without a target.
     left : bytes or None
-        `state` in which it was stopped.
+        `state` in which it was stopped, packed.
     """
 
     plan: Plan
@@ -103,11 +106,11 @@ class Session:
             seconds = None if asked.max_time is None else asked.max_time - before["seconds"]
             limit = Limit(asked.max_rays, seconds, self._journal)
             self.reached = self.drive.reach(self.runs, self._judge, self._instead, limit, self._do)
-        if self.drive.stopped and not self.finished and self.left is None:
-            # Between two pieces of work.
-            self.left = self.state()
-        # Short, if somebody waits for an end.
-        rays = LEAST_AUDIT_RAYS if self.drive.stopped else AUDIT_RAYS
+        if not self.finished and self.left is None:
+            # Stopped between two pieces of work.
+            self.left = pack(self.state())
+        # Short, if somebody waits for an end that is none yet.
+        rays = AUDIT_RAYS if self.finished else LEAST_AUDIT_RAYS
         self.audit = next((run for run in self.runs if run.audits), None) or self._audited(rays)
 
     def _choose(self):
@@ -164,26 +167,29 @@ class Session:
     def _keep(self, added, stopped):
         self._added = added
         if stopped:
-            self.left = self.left or self.state()
+            self.left = self.left or pack(self.state())
         elif self.checkpoint is not None:
             self.checkpoint(self)
 
     def state(self):
-        """All that is needed to go on after the piece of work that was added up last, as bytes for `resumed`."""
-        return pack(
-            {
-                "journal": self._journal.entries,
-                "seconds": self.drive.now(),
-                "done": self.drive.done,
-                "calls": self._current,
-                "took": self._took,
-                "added": self._added,
-                "within": 0.0 if self._began is None else self.drive.now() - self._began,
-                "spent": [self._spent.get(run, 0.0) for run in self.runs],
-                "choices": [[choice.estimator, choice.sides, choice.reason] for choice in self.choices],
-                "runs": [run.state() for run in self.runs],
-            }
-        )
+        """All that is needed to go on after the piece of work that was added up last, as a tree for `packing.pack`.
+
+        Its arrays are those of the runs, which go on to change.
+        """
+        now = self.drive.now()
+        return {
+            "version": VERSION,
+            "journal": self._journal.entries,
+            "seconds": now,
+            "done": self.drive.done,
+            "calls": self._current,
+            "took": self._took,
+            "added": self._added,
+            "within": 0.0 if self._began is None else now - self._began,
+            "spent": [self._spent.get(run, 0.0) for run in self.runs],
+            "choices": [[choice.estimator, choice.sides, choice.reason] for choice in self.choices],
+            "runs": [run.state() for run in self.runs],
+        }
 
     def look_at(self, state):
         """Fill `runs` with what is known in a state, without going on.

@@ -16,10 +16,10 @@ from .checkpoints import Checkpoints
 from .direct import direct_reflection
 from .drive import Drive
 from .memory import require_memory, threads_of
-from .packing import unpack
+from .packing import pack, unpack
 from .plan import make_plan
 from .probe import warm_up
-from .session import Session
+from .session import VERSION, Session
 
 
 def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, resume=None, **given):
@@ -74,17 +74,39 @@ def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, re
         ) from error
 
 
+def checked_state(state):
+    """What a packed state says.
+
+    Parameters
+    ----------
+    state : bytes-like
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    ValueError
+        If it is no state, or one of another version of goniosim, which would not lead to the same bits.
+    """
+    found = unpack(state)
+    if not isinstance(found, dict) or found.get("version") != VERSION:
+        raise ValueError("another version of goniosim was interrupted")
+    return found
+
+
 def _simulate(scene, progress, stop, checkpoint, every, resume):
-    before = None if resume is None else unpack(resume)
+    before = None if resume is None else checked_state(resume)
     plan, threads = make_plan(scene), granted_threads(threads_of(scene))
     warm_up(scene)
     direct = _integrate_direct(plan, threads, stop)
 
-    def keep(state):
+    def keep(session):
         looked_at = Session(plan, scene.simulation, Drive(1, threading.Event(), lambda done, total: None))
-        looked_at.look_at(unpack(state))
+        looked_at.look_at(session.state())
         if any(looked_at.rays):
-            checkpoint(_result(scene, plan, threads, direct, looked_at, state))
+            checkpoint(_result(scene, plan, threads, direct, looked_at, pack(session.state())))
 
     keeping = None if checkpoint is None else Checkpoints(every, keep)
     session = Session(plan, scene.simulation, Drive(threads, stop, _progress_of(scene, progress)), keeping, before)

@@ -4,6 +4,7 @@ import numpy as np
 
 from .._jit import kernel
 from ..sums import BLOCKS, block_starts
+from .packing import array
 
 
 class Welford:
@@ -25,9 +26,11 @@ class Welford:
         """As a tree for `packing.pack`."""
         return [self.count, self.mean, self._squares]
 
-    def restore(self, state):
-        """Go on from such a tree."""
-        self.count, self.mean, self._squares = state
+    def restore(self, state, shape):
+        """Go on from such a tree, of arrays of some shape."""
+        self.count, mean, squares = state
+        if self.count:
+            self.mean, self._squares = array(mean, shape), array(squares, shape)
 
     def variance_of_mean(self):
         """Squared standard error of the mean."""
@@ -51,10 +54,14 @@ class FoldedBlocks:
         )
         self._width = width
 
+    def shape(self, half):
+        """Shape of the sums of folded slices of some shape."""
+        return (*half[:-2], len(self._rows) - 1, len(self._columns) - 1)
+
     def __call__(self, half):
         """Sums of ``half[..., row, folded column]``, shape (..., row blocks, column blocks)."""
         rows, width = half.shape[-2:]
-        found = np.empty((*half.shape[:-2], len(self._rows) - 1, len(self._columns) - 1))
+        found = np.empty(self.shape(half.shape))
         flat = np.ascontiguousarray(half).reshape(-1, rows, width)
         _block_sums(flat, self._rows, self._columns, np.empty(self._columns[-1]), found.reshape(-1, *found.shape[-2:]))
         return found

@@ -6,7 +6,7 @@ from goniosim.store.datatree import to_datatree
 from goniosim.store.keeping import Standing, look_at, refuse_newer
 from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_be_models_file, open_models
 from goniosim.store.output import Reservation, reserve_output
-from goniosim.store.reader import open_result, read_header, read_scene
+from goniosim.store.reader import open_result, read_header, read_scene, read_state
 from goniosim.store.saving import write_result
 from goniosim.store.size import predicted_size
 
@@ -24,6 +24,7 @@ __all__ = [
     "predicted_size",
     "read_header",
     "read_scene",
+    "read_state",
     "refuse_newer",
     "reserve_output",
     "to_datatree",

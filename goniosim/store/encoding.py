@@ -34,10 +34,13 @@ def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> N
         If a number is not finite.
     """
     values = stored(path, values, entry.dtype)
-    # HDF5 cannot chunk an empty dataset, and there is nothing in it to protect.
-    filters = {"chunks": chunk_shape(values.shape), **chunks.FILTERS} if values.size else {}
+    # HDF5 cannot chunk an empty dataset, and there is nothing in it to protect. Bytes are written in passing.
+    plain = not values.size or entry.dtype == "uint8"
+    filters = {} if plain else {"chunks": chunk_shape(values.shape), **chunks.FILTERS}
     dataset = root.create_dataset(path, values.shape, values.dtype, track_times=False, **filters)
-    if values.size:
+    if plain:
+        dataset[...] = values
+    else:
         chunks.write(dataset, values)
     _write_meaning(dataset, entry)
     write_text(dataset, manifest.VALUES, manifest.digest_of_values(values))
@@ -48,7 +51,7 @@ def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> N
     if entry.is_scale:
         dataset.make_scale(entry.dims[0])
     else:
-        for axis, dim in enumerate(entry.dims):
+        for axis, dim in enumerate(dim for dim in entry.dims if dim in SCALES):
             dataset.dims[axis].attach_scale(root[SCALES[dim]])
         _link_coordinates(root, path, dataset, entry)
 
@@ -87,7 +90,7 @@ def _link_coordinates(root: h5py.Group, path: str, dataset: h5py.Dataset, entry:
     angles = angles_of(path, entry)
     if angles:
         write_text(dataset, "coordinates", " ".join(angles))
-    for name, target in ({dim: SCALES[dim] for dim in entry.dims} | angles).items():
+    for name, target in ({dim: SCALES[dim] for dim in entry.dims if dim in SCALES} | angles).items():
         if name not in dataset.parent:
             dataset.parent[name] = root[target]
 

@@ -12,7 +12,7 @@ from goniosim.store import access, validation
 from goniosim.store.decoding import cells, shaped, values
 from goniosim.store.earlier import Earlier
 from goniosim.store.kinds import RESULT
-from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE
+from goniosim.store.layout import COMPONENTS, NOT_PROVENANCE, describe
 from goniosim.store.manifest import Manifest, NoManifest
 from goniosim.store.opening import decoding, opened, written_by
 from goniosim.writing import StrPath
@@ -79,6 +79,32 @@ def read_header(path: StrPath) -> dict[str, str | int]:
     """
     with opened(path, RESULT, whole=False) as (file, ours), decoding(path, RESULT.remedy):
         return _header(file, ours)
+
+
+def read_state(path: StrPath) -> bytes | None:
+    """Read what an interrupted run goes on from; every byte of the file is checked.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    bytes or None
+        As `goniosim.engine.simulate` takes it; None if the file has none.
+
+    Raises
+    ------
+    ForeignFileError, DamagedFileError, NewerSchemaError, UnusableResultError
+        As `open_result`.
+    """
+    with opened(path, RESULT) as (file, ours), decoding(path, RESULT.remedy):
+        if not ours.has("state"):
+            return None
+        entry = describe("state")
+        length = access.dataset(file, "state").size or 0
+        found: bytes = values(shaped(file, "state", entry, {"byte": length}), entry).tobytes()
+        return found
 
 
 def read_scene(path: StrPath) -> Scene:

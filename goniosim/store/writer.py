@@ -48,6 +48,7 @@ def encode(result: Result) -> tuple[memoryview | bytes, ...]:
         "row_edges": len(result.cells.row_edges),
         "column_edges": len(result.cells.column_edges),
         "checkpoint": result.cost.checkpoints,
+        "byte": len(result.state or b""),
     }
     if batches is not None:
         sizes |= dict(zip(("batch", "row_block", "column_block"), (batches.shape[n] for n in (1, 3, 4)), strict=True))
@@ -152,3 +153,5 @@ def arrays(result: Result) -> Iterator[tuple[str, Any]]:
         yield f"cost/{name}", getattr(result.cost, name)
     for sampled, error in result.cost.error.items():
         yield f"cost/error_{sampled.replace('/', '_')}", error
+    if result.state is not None:
+        yield "state", np.frombuffer(result.state, np.uint8)

@@ -60,7 +60,7 @@ class States:
         self.found = []
 
     def __call__(self, session):
-        self.found.append(session.state())
+        self.found.append(pack(session.state()))
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -107,9 +107,11 @@ def reach(runs, limit, stop=None, clock=None, instead=lambda run: None, given=No
 
     def do(run, works):
         order.append((runs.index(run), works[0][0]))
+        began = clock.seconds
         for number, m in works:
             run.rounds[m] += 1
             clock.seconds += run.seconds * run.rays_of_round(number)
+        return clock.seconds - began
 
     def judge(run, m):
         return None if run.needed[m] == NEVER else run.rounds[m] >= run.needed[m]
