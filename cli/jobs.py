@@ -2,10 +2,10 @@
 
 import os
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from goniosim.errors import FewerRaysError, OutputError, StoppedError
+from goniosim.errors import FewerRaysError, GoniosimError, OutputError, StoppedError
 from goniosim.parts import remove_dead
 from goniosim.writing import make_folder
 
@@ -16,10 +16,11 @@ _REMEDY = "nothing is overwritten: choose another place with -o, or replace resu
 
 @dataclass(frozen=True)
 class Job:
-    """A scene and the file its result goes to."""
+    """A scene, the file its result goes to, and whether an interrupted run of it goes on."""
 
     scene: object
     path: Path
+    goes_on: bool = False
 
     @property
     def name(self):
@@ -29,6 +30,10 @@ class Job:
     def is_finished(self, standing):
         """Whether a `goniosim.store.Standing`, if there is one, holds what is asked for."""
         return standing is not None and standing.holds(self.scene.simulation)
+
+    def goes_on_from(self, standing):
+        """Whether a `goniosim.store.Standing`, if there is one, is what an interrupted run of the same left."""
+        return standing is not None and standing.is_resumed_by(self.scene.simulation)
 
     def reserve(self):
         """Make sure that the file can be written, and keep room for it."""
@@ -92,7 +97,7 @@ def sort_out(planned, overwrite, note):
         if standing.damage:
             note(f"to be replaced: {standing.damage}")
     kept = {job.path: found[job.path] for job in planned if job.is_finished(found.get(job.path))}
-    todo = [job for job in planned if job.path not in kept]
+    todo = [replace(job, goes_on=job.goes_on_from(found.get(job.path))) for job in planned if job.path not in kept]
     for job in todo:
         refuse_newer(job.path)
         # Room is kept only for the material at work: a killed study leaves a single hidden file behind.
@@ -179,8 +184,18 @@ def require_room(planned):
     reserve_output(paths[0], sum(file_size(job.scene) for job in planned)).release()
 
 
-def run(jobs, progress, signals, verbose, overwrite=False):
-    """Simulate and write, yielding each (job, result) once its file stands; end early when stopped."""
+def run(jobs, progress, signals, verbose, overwrite, every):
+    """Simulate and write, yielding each (job, result) once its file stands; end early when stopped.
+
+    Parameters
+    ----------
+    jobs : list of Job
+    progress : goniosim.report.progress
+    signals : goniosim_cli.signals.StopSignals
+    verbose, overwrite : bool
+    every : float
+        Seconds between two checkpoints.
+    """
     from goniosim._jit.folder import notices
     from goniosim.report.simulation.forecast import effects_text
     from goniosim.report.simulation.losses import event_cap
@@ -188,7 +203,7 @@ def run(jobs, progress, signals, verbose, overwrite=False):
     from goniosim.store import write_result
 
     for number, job in enumerate(jobs, 1):
-        if signals.signum is not None:
+        if signals.reason is not None:
             return
         label = f"{number}/{len(jobs)} {job.name}" if len(jobs) > 1 else job.name
         if verbose:
@@ -201,21 +216,23 @@ def run(jobs, progress, signals, verbose, overwrite=False):
                 for notice in notices:
                     progress.note(notice)
             try:
-                result = _simulate(job.scene, label, progress, signals)
+                result = _simulate(job, label, progress, signals, overwrite, every)
             except StoppedError:
-                progress.note(f"stopped by {signals.name} before the first rays")
+                left = f"; {job.path} stays as it is" if job.goes_on else ""
+                progress.note(f"stopped by {signals.reason} before the first rays{left}")
                 return
             try:
                 write_result(result, job.path, overwrite=overwrite, reservation=signals.reservation)
             except FewerRaysError as error:
-                progress.note(f"stopped by {signals.name}: {error.fact}" if signals.signum else error.fact)
+                progress.note(f"stopped by {signals.reason}: {error.fact}" if signals.reason else error.fact)
                 continue
         if result.status == "partial":
             total = job.scene.total_rays
             held = f"{counts(result.rays)} rays per direction"
             if total is not None:
                 held = f"{100.0 * result.rays.sum() / total:.3g} % of the rays"
-            progress.note(f"stopped by {signals.name}: {job.path} holds {held} (partial)")
+            further = "; the same command goes on" if result.state is not None else ""
+            progress.note(f"stopped by {signals.reason}: {job.path} holds {held} (partial){further}")
         if warning := event_cap(result):
             progress.note(f"{label}: {warning}")
         yield job, result
@@ -223,8 +240,9 @@ def run(jobs, progress, signals, verbose, overwrite=False):
         del result
 
 
-def _simulate(scene, label, progress, signals):
+def _simulate(job, label, progress, signals, overwrite, every):
     from goniosim.engine import simulate
+    from goniosim.store import write_result
 
     def report(done_rays, total_rays):
         if not signals.gathering:
@@ -232,7 +250,33 @@ def _simulate(scene, label, progress, signals):
             signals.gathering = True
         progress.update(done_rays, total_rays)
 
-    return simulate(scene, progress=report, stop=signals.event)
+    def keep(result):
+        try:
+            write_result(result, job.path, overwrite=overwrite, rescued=False)
+        except FewerRaysError:
+            # What stands there is worth more until then.
+            pass
+        except OutputError as error:
+            progress.note(f"{label}: no checkpoint: {error}")
+
+    resume = _left_by_another(job, progress) if job.goes_on else None
+    return simulate(job.scene, progress=report, stop=signals.event, checkpoint=keep, every=every, resume=resume)
+
+
+def _left_by_another(job, progress):
+    """What an interrupted run goes on from; None, with a word on why, if it cannot."""
+    from goniosim.engine import checked_state
+    from goniosim.report.text import counts
+    from goniosim.store import look_at, read_state
+
+    try:
+        state = read_state(job.path)
+        checked_state(state)
+        progress.note(f"{job.path}: goes on from {counts(look_at(job.path, job.scene).rays)} rays per direction")
+    except GoniosimError as error:
+        progress.note(f"{job.path}: begins anew: {error}")
+        return None
+    return state
 
 
 def _warm_up(scene, progress):

@@ -99,6 +99,13 @@ class Quantity(click.ParamType):
         return value
 
 
+def seconds_of(time):
+    """Seconds of a `Quantity` that is a time; None for None."""
+    from goniosim.scene import target
+
+    return None if time is None else target.TimeSpan().check(time)
+
+
 # As in goniosim/scene, which is not loaded for help.
 ESTIMATORS = ("auto", "analog", "split", "operator", "connection")
 OF = ("slice", "albedo", "cells")

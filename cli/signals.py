@@ -1,4 +1,7 @@
-"""Ctrl-C, SIGTERM and a closed terminal: the first asks the simulation to stop, a second Ctrl-C ends it at once."""
+"""Signals and time limits: the first asks the simulation to stop and keep what it has, a second Ctrl-C ends it at once.
+
+Batch systems send SIGTERM before they end a job, SIGXCPU at a limit, and whatever they were told to send as a warning.
+"""
 
 import contextlib
 import os
@@ -12,11 +15,15 @@ from .policy import say_error
 SAME_SIGNAL = 0.3
 
 NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM", signal.SIGHUP: "SIGHUP"}
+# What stops a simulation besides.
+WARNINGS = {signal.SIGUSR1: "SIGUSR1", signal.SIGUSR2: "SIGUSR2", signal.SIGXCPU: "SIGXCPU"}
+# "Run me again": what is missing is traced then.
+UNFINISHED = 75
 
 
-def _handle_all(handler):
+def _handle_all(handler, names=NAMES):
     """Set one handler for all signals, and return those before; ``nohup`` remains what it promises."""
-    earlier = {signum: signal.getsignal(signum) for signum in NAMES}
+    earlier = {signum: signal.getsignal(signum) for signum in names}
     if earlier[signal.SIGHUP] is signal.SIG_IGN:
         del earlier[signal.SIGHUP]
     for signum in earlier:
@@ -57,7 +64,12 @@ def undisturbed():
 
 
 class StopSignals:
-    """While active, turns signals into a request to stop.
+    """While active, turns signals and the end of the time into a request to stop.
+
+    Parameters
+    ----------
+    time_limit : float, optional
+        Seconds until the simulation is to stop.
 
     Attributes
     ----------
@@ -67,49 +79,55 @@ class StopSignals:
         Whether it is; until then the first signal ends the process at once.
     reservation : goniosim.store.Reservation or None
         To be released before the process ends at once.
-    signum : signal.Signals or None
-        The first signal.
+    reason : str or None
+        What the user calls the first signal, or the end of the time.
+    exit_code : int
+        130 after Ctrl-C, as a shell reports it; `UNFINISHED` after anything else.
     """
 
-    def __init__(self):
+    def __init__(self, time_limit=None):
         self.event = threading.Event()
         self.gathering = False
         self.reservation = None
-        self.signum = None
+        self.reason = None
+        self.exit_code = UNFINISHED
+        self._since = 0.0
+        self._timer = None if time_limit is None else threading.Timer(time_limit, self._ask, ("the time limit",))
 
     def __enter__(self):
-        self._earlier = _handle_all(self._handle)
+        self._earlier = _handle_all(self._handle, NAMES | WARNINGS)
+        if self._timer is not None:
+            self._timer.daemon = True
+            self._timer.start()
         return self
 
     def __exit__(self, *_):
+        if self._timer is not None:
+            self._timer.cancel()
         for signum, handler in self._earlier.items():
             signal.signal(signum, handler)
 
-    @property
-    def name(self):
-        """What the user calls the first signal."""
-        return NAMES[self.signum]
-
-    @property
-    def exit_code(self):
-        """128 and the number of the first signal, as a shell reports it."""
-        return 128 + self.signum
-
     def _handle(self, signum, frame):
         now = time.monotonic()
-        if self.signum is None:
-            self.signum = signal.Signals(signum)
-            self._since = now
+        if self.reason is None:
+            if signum == signal.SIGINT:
+                self.exit_code = 128 + signum
+            self._ask((NAMES | WARNINGS)[signum])
+        elif signum == signal.SIGINT and now - self._since > SAME_SIGNAL:
+            self._end("at once: what was gathered since the last checkpoint is not kept")
+
+    def _ask(self, reason):
+        if self.reason is None:
+            self.reason = reason
+            self._since = time.monotonic()
             if not self.gathering:
                 self._end("before the first rays")
             self.event.set()
-        elif signum == signal.SIGINT and now - self._since > SAME_SIGNAL:
-            self._end("at once: the rays gathered are not kept")
 
     def _end(self, when):
         # No exception: the compiler's threads would hold it up, and a destructor might swallow it.
         if self.reservation is not None:
             self.reservation.release()
         with contextlib.suppress(OSError):
-            os.write(2, f"\ngoniosim: stopped by {self.name} {when}\n".encode())
+            os.write(2, f"\ngoniosim: stopped by {self.reason} {when}\n".encode())
         os._exit(self.exit_code)

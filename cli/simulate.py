@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, Count, overrides_of, set_option, simulation_options
+from .options import PATH, Count, Quantity, overrides_of, seconds_of, set_option, simulation_options
 from .policy import debug_option, say, say_error
 from .signals import StopSignals
 
@@ -22,19 +22,33 @@ from .signals import StopSignals
 @simulation_options
 @click.option("--seed", type=Count(), metavar="S", help="Seed of the random numbers.")
 @set_option
+@click.option(
+    "--checkpoint",
+    type=Quantity("time", "TimeSpan"),
+    default="60s",
+    metavar="TIME",
+    help="Keep what was gathered every so often: 30s, 10m [default: 60s].",
+)
+@click.option(
+    "--time-limit",
+    type=Quantity("time", "TimeSpan"),
+    metavar="TIME",
+    help="Stop after so long, keep what was gathered, and exit with 75: 55m, 23h50m.",
+)
 @click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays, without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("-v", "--verbose", is_flag=True, help="Also show effects and compilation time.")
 @debug_option
 @click.pass_context
-def simulate(ctx, config, output, overrides, overwrite, quiet, verbose, **asked):
+def simulate(ctx, config, output, overrides, checkpoint, time_limit, overwrite, quiet, verbose, **asked):
     """Simulate a scene or study file and write the result.
 
     CONFIG is the file, or - for the standard input. A study writes one file per material into a folder.
     A file that holds the rays or the accuracy asked for, or more, stays as it is; one with less is
-    replaced; the result of another scene is an error. Ctrl-C stops within two seconds and keeps what was
-    gathered, marked as partial. A target that --max-rays or --max-time cut short leaves a result, and
-    exit code 9.
+    replaced; the result of another scene is an error. Ctrl-C, a signal of a batch system or --time-limit
+    stop within two seconds and keep what was gathered, marked as partial: the same command goes on from
+    there, to the same numbers as without the interruption. A target that --max-rays or --max-time cut
+    short leaves a result, and exit code 9.
 
     \b
     Examples: goniosim simulate quickstart.yaml
@@ -61,10 +75,10 @@ def simulate(ctx, config, output, overrides, overwrite, quiet, verbose, **asked)
         require_memory(job.scene)
     progress = make_progress(total_rays(job.scene for job in todo), quiet)
     done = []
-    with StopSignals() as signals, contextlib.closing(progress):
+    with StopSignals(seconds_of(time_limit)) as signals, contextlib.closing(progress):
         for note in notes:
             progress.note(note)
-        for job, result in jobs.run(todo, progress, signals, verbose, overwrite):
+        for job, result in jobs.run(todo, progress, signals, verbose, overwrite, seconds_of(checkpoint)):
             done.append(study.row(result, job.path) if many else summary(result, job.path))
             if result.target_reached is False and result.status == "complete":
                 missed.append(f"{job.path}: {target.shortfall(job.scene.simulation)}")
@@ -73,7 +87,7 @@ def simulate(ctx, config, output, overrides, overwrite, quiet, verbose, **asked)
         say(study.study_text(done) if many else done[0])
     for line in missed:
         say_error(line)
-    if signals.signum is not None:
+    if signals.reason is not None:
         ctx.exit(signals.exit_code)
     if missed:
         ctx.exit(TARGET_NOT_REACHED)

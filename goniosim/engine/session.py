@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..errors import UnusableResultError
 from ..provenance import version_of
 from . import assembly
 from .analog import AnalogRun
@@ -159,9 +160,14 @@ class Session:
         return self._took[-1]
 
     def _take_over(self, state):
-        for run, values, spent in zip(self.runs, state["runs"], state["spent"], strict=True):
-            run.restore(values)
-            self._spent[run] = spent
+        try:
+            for run, values, spent in zip(self.runs, state["runs"], state["spent"], strict=True):
+                run.restore(values)
+                self._spent[run] = float(spent)
+        except (ValueError, TypeError, LookupError, AttributeError) as error:
+            raise UnusableResultError(
+                f"what was left of the interrupted run does not fit the scene: {error}"
+            ) from error
         self.resumed = None
 
     def _keep(self, added, stopped):
@@ -204,7 +210,7 @@ class Session:
         self.reached = None if self.simulation.target is None else False
         self._take_over(state)
         for run in self.runs:
-            self._from = self.drive.now() - self._spent[run]
+            self._from = self.drive.now() - self._spent[run] - float(state["within"])
             for direction in range(len(self.plan.theta_deg)):
                 run.finish_round(direction)
                 noted = run.spending.checkpoints[direction]

@@ -5,7 +5,7 @@ import threading
 import numpy as np
 
 from ..cores import granted_threads
-from ..errors import ResourceError, StoppedError
+from ..errors import ResourceError, StoppedError, UnusableResultError
 from ..integration import Pool
 from ..provenance import provenance
 from ..result import Result
@@ -58,7 +58,7 @@ def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, re
         If it does not fit into the memory that is free.
     goniosim.errors.StoppedError
         If it was stopped before any work unit was finished, or before an interrupted run went on.
-    ValueError
+    goniosim.errors.UnusableResultError
         If ``resume`` is not such a state.
     """
     scene = with_arguments(scene, given)
@@ -87,12 +87,15 @@ def checked_state(state):
 
     Raises
     ------
-    ValueError
+    goniosim.errors.UnusableResultError
         If it is no state, or one of another version of goniosim, which would not lead to the same bits.
     """
-    found = unpack(state)
+    try:
+        found = unpack(state)
+    except ValueError as error:
+        raise UnusableResultError(str(error)) from error
     if not isinstance(found, dict) or found.get("version") != VERSION:
-        raise ValueError("another version of goniosim was interrupted")
+        raise UnusableResultError("the interrupted run was of another version of goniosim")
     return found
 
 

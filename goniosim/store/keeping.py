@@ -50,6 +50,8 @@ class Standing:
         What the result was asked for, where ``rays`` are known.
     target_reached : bool or None
         Whether its target was reached; None if it had none.
+    has_state : bool
+        Whether an interrupted run of it can go on.
     """
 
     rays: np.ndarray | None = None
@@ -58,6 +60,7 @@ class Standing:
     damage: str = ""
     simulation: Simulation | None = None
     target_reached: bool | None = None
+    has_state: bool = False
 
     def holds(self, asked: Simulation) -> bool:
         """Whether it is of the scene asked for, and gives what is asked for: the rays, or the accuracy.
@@ -76,6 +79,13 @@ class Standing:
         if self.target_reached:
             return asked.target.is_met_by(target)
         return asked.target == target and _are_narrower(asked, self.simulation)
+
+    def is_resumed_by(self, asked: Simulation) -> bool:
+        """Whether it is what an interrupted run left of just what is asked for; threads and limits may be others."""
+        if not self.has_state or self.simulation is None:
+            return False
+        free = dict.fromkeys((*LIMITS, "threads"))
+        return asked.model_copy(update=free) == self.simulation.model_copy(update=free)
 
     def outweighs(self, rays: np.ndarray) -> bool:
         """Whether it is of the scene asked for, with more rays, all directions together."""
@@ -184,8 +194,10 @@ def _scene(config_yaml: str) -> Scene | None:
 def _standing(path: StrPath, header: Mapping[str, str | int]) -> Standing:
     scene = _scene(str(header["config_yaml"]))
     reached = header.get("target_reached")
+    rays, has_state = _look_into(path)
     return Standing(
-        rays=_rays(path),
+        rays=rays,
+        has_state=has_state,
         status=str(header["status"]),
         simulation=scene.simulation if scene else None,
         target_reached=None if reached is None else bool(reached),
@@ -204,13 +216,13 @@ def _verify(path: StrPath) -> None:
         pass
 
 
-def _rays(path: StrPath) -> np.ndarray:
-    """Rays traced from each direction, shape (M,), without reading the whole file."""
-    with opened(path, RESULT, whole=False) as (file, _), decoding(path, RESULT.remedy):
+def _look_into(path: StrPath) -> tuple[np.ndarray, bool]:
+    """Rays traced from each direction, shape (M,), and whether there is a state, without reading the whole file."""
+    with opened(path, RESULT, whole=False) as (file, ours), decoding(path, RESULT.remedy):
         rays = access.dataset(file, "incident/rays")
         # Read only what cannot be huge.
         if len(rays.shape) == 1 and rays.shape[0] <= MAX_DIRECTIONS:
-            return access.read(rays).astype(np.int64, casting="safe")
+            return access.read(rays).astype(np.int64, casting="safe"), ours.has("state")
     raise DamagedFileError(f"{path}: does not say how many rays were traced; {RESULT.remedy}")
 
 

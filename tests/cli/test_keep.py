@@ -55,7 +55,7 @@ def interrupt(monkeypatch, rays):
 
     simulate = engine.simulate
 
-    def stopped(scene, progress, stop):
+    def stopped(scene, progress, stop, **_):
         result = simulate(scene.model_copy(update={"simulation": scene.simulation.model_copy(update={"rays": rays})}))
         progress(rays, scene.simulation.rays)
         os.kill(os.getpid(), signal.SIGINT)

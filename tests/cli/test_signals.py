@@ -5,7 +5,7 @@ import signal
 import threading
 
 import pytest
-from goniosim_cli.signals import undisturbed
+from goniosim_cli.signals import WARNINGS, undisturbed
 
 from goniosim.store import open_result, write_result
 from synthetic import make_result
@@ -40,7 +40,12 @@ def _wait_for(process, words):
 
 @pytest.mark.parametrize(
     ("signum", "code", "estimator"),
-    [(signal.SIGINT, 130, "auto"), (signal.SIGTERM, 143, "analog"), (signal.SIGHUP, 129, "analog")],
+    [
+        (signal.SIGINT, 130, "auto"),
+        (signal.SIGTERM, 75, "analog"),
+        (signal.SIGHUP, 75, "analog"),
+        *((each, 75, "auto") for each in WARNINGS),
+    ],
 )
 def test_what_was_gathered_is_kept(python, folder, signum, code, estimator):
     process = python(_IMPATIENT, "simulate", "scene.yaml", "--rays", FOREVER, "--estimator", estimator)
@@ -97,7 +102,7 @@ def test_before_the_first_rays_there_is_nothing_to_keep_and_nothing_to_wait_for(
 _DEAF_ENGINE = """
 import sys, time
 import goniosim.engine
-def deaf(scene, progress, stop):
+def deaf(scene, progress, stop, **_):
     progress(1, 10)
     print("tracing", file=sys.stderr, flush=True)
     stop.wait()
@@ -118,7 +123,7 @@ def test_a_second_ctrl_c_ends_at_once(python, folder):
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "stopped by Ctrl-C at once: the rays gathered are not kept" in err
+    assert "stopped by Ctrl-C at once: what was gathered since the last checkpoint is not kept" in err
     assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "study.yaml"]
 
 

@@ -24,7 +24,7 @@ def aimed(monkeypatch):
     simulate = engine.simulate
     plan = {"rays": 1000, "missed": set(), "asked": [], "interrupted": False}
 
-    def obey(scene, progress, stop):
+    def obey(scene, progress, stop, **_):
         plan["asked"].append(scene.simulation)
         changes = {"rays": plan["rays"], "target": None, "max_rays": None, "max_time": None}
         result = simulate(scene.model_copy(update={"simulation": scene.simulation.model_copy(update=changes)}))

@@ -1,0 +1,109 @@
+"""Runs that are stopped or killed, and go on: by the same command, to the same numbers."""
+
+import signal
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+from goniosim.engine import simulate
+from goniosim.scene import parse_scene
+from goniosim.store import open_result, read_state
+from small import SCENE
+
+# Some seconds of work, on any machine.
+RAYS = "4e7"
+ASKED = ("simulate", "scene.yaml", "--estimator", "analog", "--rays", RAYS)
+_IMPATIENT = """
+import goniosim.report.progress
+goniosim.report.progress.FIRST_LINE = 0.1
+from goniosim_cli.main import main
+main()
+"""
+# Checkpoints as often as can be, however much of the time they take.
+_EAGER = (
+    """
+import goniosim.engine.checkpoints
+goniosim.engine.checkpoints.MOST = 1.0
+"""
+    + _IMPATIENT
+)
+
+
+def wait_for(process, words):
+    guard = threading.Timer(300.0, process.kill)
+    guard.start()
+    try:
+        assert any(words in line for line in process.stderr), f"{words!r} never came"
+    finally:
+        guard.cancel()
+
+
+def numbers(result):
+    """Everything but times."""
+    parts = [part for one in result.components.values() for part in (one, *one.orders.values())]
+    arrays = [getattr(part, name) for part in parts for name in ("energy", "stderr", "hits", "albedo_stderr")]
+    return [result.rays, *arrays, *result.audit.energy.values(), *result.audit.stderr.values(), result.cost.rays]
+
+
+def same(one, other):
+    return all(np.array_equal(a, b) for a, b in zip(numbers(one), numbers(other), strict=True))
+
+
+@pytest.fixture(scope="module")
+def whole():
+    """The result of an uninterrupted run."""
+    return simulate(parse_scene(SCENE), rays=float(RAYS), estimator="analog")
+
+
+def test_stopped_by_a_signal_and_by_time_it_goes_on_to_the_same_numbers(python, goniosim, folder, whole):
+    process = python(_IMPATIENT, *ASKED)
+    wait_for(process, f"% of {RAYS} rays")
+    process.send_signal(signal.SIGUSR1)
+    _, err = process.communicate()
+    assert process.returncode == 75
+    assert "stopped by SIGUSR1: small.h5 holds" in err and "the same command goes on" in err
+    first = open_result(folder / "small.h5")
+    assert first.status == "partial" and read_state(folder / "small.h5") is not None
+    process = python(_IMPATIENT, *ASKED, "--time-limit", "2s", "--threads", "1")
+    _, err = process.communicate()
+    assert process.returncode == 75
+    assert f"small.h5: goes on from {first.rays[0]:.3g}" in err.replace("+0", "") and "stopped by the time limit" in err
+    assert open_result(folder / "small.h5").rays[0] >= first.rays[0]
+    code, out, err = goniosim(*ASKED)
+    assert code == 0 and "small.h5: goes on from" in err
+    found = open_result(folder / "small.h5")
+    assert found.status == "complete" and read_state(folder / "small.h5") is None
+    assert same(found, whole)
+
+
+def test_a_killed_run_goes_on_from_its_last_checkpoint(python, goniosim, folder, whole):
+    process = python(_EAGER, *ASKED, "--checkpoint", "0.2s")
+    wait_for(process, f"% of {RAYS} rays")
+    guard = threading.Timer(300.0, process.kill)
+    guard.start()
+    while not (folder / "small.h5").exists():
+        assert process.poll() is None
+    guard.cancel()
+    process.kill()
+    process.communicate()
+    held = open_result(folder / "small.h5")
+    assert held.status == "partial" and 0 < held.rays[0] < 4e7
+    code, _, err = goniosim(*ASKED)
+    assert code == 0 and "goes on from" in err
+    assert same(open_result(folder / "small.h5"), whole)
+    assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "small.h5", "study.yaml"]
+
+
+def test_what_another_version_left_is_begun_anew(python, goniosim, folder, whole, monkeypatch):
+    process = python(_IMPATIENT, *ASKED)
+    wait_for(process, f"% of {RAYS} rays")
+    process.terminate()
+    process.communicate()
+    assert process.returncode == 75
+    # A function of the package has the name of the module.
+    monkeypatch.setattr(sys.modules["goniosim.engine.simulate"], "VERSION", [0, "0.0"])
+    code, _, err = goniosim(*ASKED)
+    assert code == 0 and "small.h5: begins anew: the interrupted run was of another version of goniosim" in err
+    assert same(open_result(folder / "small.h5"), whole)
