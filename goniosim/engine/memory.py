@@ -64,6 +64,8 @@ class Memory:
         What passes by while tallies become slices.
     estimators : int
         What all directions share of estimators other than analog, such as the kernels of operators.
+    state : int
+        What an interrupted run goes on from, alone and in its file.
     """
 
     program: int
@@ -77,12 +79,19 @@ class Memory:
     file: int
     scratch: int
     estimators: int
+    state: int
 
     @property
     def phases(self):
         """Names of what is held at the same time, for every phase."""
         held = ("program", "cells", "direct", "tallies", "audit", "scratch")
-        return (*held, "threads", "queues", "estimators"), (*held, "result"), ("program", "result", "file")
+        traced, found = (*held, "threads", "queues", "estimators"), (*held, "result", "state")
+        return traced, found, ("program", "result", "file", "state")
+
+    @property
+    def checkpoint(self):
+        """Bytes that it takes to keep a run while it goes on: its sums once more, their result and their file."""
+        return self.tallies + self.scratch + self.result + self.file + self.state
 
     @property
     def peak(self):
@@ -126,7 +135,7 @@ def _needed(plan, simulation, threads):
         if choice.estimator != ANALOG:
             for name, n_bytes in _of_replicates(plan, choice, threads).items():
                 parts[name] += n_bytes
-    return Memory(**parts)
+    return Memory(**parts, state=2 * parts["tallies"])
 
 
 def _of_result(plan):
@@ -255,6 +264,7 @@ _PURPOSE = {
     "file": "the file while it is written",
     "scratch": "sums of tallies",
     "estimators": "what the estimator prepares",
+    "state": "what an interrupted run goes on from",
 }
 
 

@@ -30,6 +30,8 @@ def pack(tree):
     found = io.BytesIO()
     # Not `np.savez`: it writes the time of day.
     with zipfile.ZipFile(found, "w") as archive:
+        # HDF5 takes zeros at the end for padding.
+        archive.comment = b"."
         archive.writestr(zipfile.ZipInfo(_TREE), text)
         for number, array in enumerate(arrays):
             with archive.open(zipfile.ZipInfo(str(number)), "w", force_zip64=True) as entry:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..cores import granted_threads
 from ..errors import ResourceError, StoppedError, UnusableResultError
+from ..free_memory import free_memory
 from ..integration import Pool
 from ..provenance import provenance
 from ..result import Result
@@ -15,7 +16,7 @@ from .blas import one_thread
 from .checkpoints import Checkpoints
 from .direct import direct_reflection
 from .drive import Drive
-from .memory import require_memory, threads_of
+from .memory import memory_needed, require_memory, threads_of
 from .packing import pack, unpack
 from .plan import make_plan
 from .probe import warm_up
@@ -105,7 +106,13 @@ def _simulate(scene, progress, stop, checkpoint, every, resume):
     warm_up(scene)
     direct = _integrate_direct(plan, threads, stop)
 
+    enough = memory_needed(scene).checkpoint
+
     def keep(session):
+        free = free_memory()
+        if free is not None and free[0] < enough:
+            # Rather none than the end of the run.
+            return
         looked_at = Session(plan, scene.simulation, Drive(1, threading.Event(), lambda done, total: None))
         looked_at.look_at(session.state())
         if any(looked_at.rays):

@@ -29,7 +29,8 @@ def shaped(root: h5py.Group, path: str, entry: Dataset, sizes: Mapping[str, int]
     shape = tuple(sizes[dim] for dim in entry.dims)
     if found.shape != shape:
         raise ValueError(f"{path} has shape {found.shape}, not {shape}")
-    expected = {"text": f"S{found.dtype.itemsize}", "bool": "int8"}.get(entry.dtype, entry.dtype)
+    fixed = f"S{found.dtype.itemsize}"
+    expected = {"text": fixed, "bytes": fixed, "bool": "int8"}.get(entry.dtype, entry.dtype)
     if found.dtype != np.dtype(expected).newbyteorder("<") or (entry.dtype == "text" and not _is_short(found)):
         raise ValueError(f"{path} has the type {found.dtype}, not {entry.dtype}")
     return found
@@ -50,6 +51,8 @@ def values(found: h5py.Dataset, entry: Dataset) -> Any:
     raw = access.read(found)
     if entry.dtype == "text":
         return [word.decode() for word in raw.tolist()]
+    if entry.dtype == "bytes":
+        return raw.tobytes()
     if not entry.range.holds(raw):
         raise ValueError(f"{found.name} must be {entry.range}")
     return raw.astype(entry.dtype, copy=False)

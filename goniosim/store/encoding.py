@@ -34,14 +34,14 @@ def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> N
         If a number is not finite.
     """
     values = stored(path, values, entry.dtype)
-    # HDF5 cannot chunk an empty dataset, and there is nothing in it to protect. Bytes are written in passing.
-    plain = not values.size or entry.dtype == "uint8"
-    filters = {} if plain else {"chunks": chunk_shape(values.shape), **chunks.FILTERS}
+    # HDF5 cannot chunk an empty dataset, and there is nothing in it to protect; nor a single number or row of bytes.
+    is_chunked = values.size > 0 and values.ndim > 0
+    filters = {"chunks": chunk_shape(values.shape), **chunks.FILTERS} if is_chunked else {}
     dataset = root.create_dataset(path, values.shape, values.dtype, track_times=False, **filters)
-    if plain:
-        dataset[...] = values
-    else:
+    if is_chunked:
         chunks.write(dataset, values)
+    elif values.size:
+        dataset[()] = values
     _write_meaning(dataset, entry)
     write_text(dataset, manifest.VALUES, manifest.digest_of_values(values))
     if entry.dtype == "bool":
@@ -51,7 +51,7 @@ def write_dataset(root: h5py.Group, path: str, values: Any, entry: Dataset) -> N
     if entry.is_scale:
         dataset.make_scale(entry.dims[0])
     else:
-        for axis, dim in enumerate(dim for dim in entry.dims if dim in SCALES):
+        for axis, dim in enumerate(entry.dims):
             dataset.dims[axis].attach_scale(root[SCALES[dim]])
         _link_coordinates(root, path, dataset, entry)
 
@@ -90,7 +90,7 @@ def _link_coordinates(root: h5py.Group, path: str, dataset: h5py.Dataset, entry:
     angles = angles_of(path, entry)
     if angles:
         write_text(dataset, "coordinates", " ".join(angles))
-    for name, target in ({dim: SCALES[dim] for dim in entry.dims if dim in SCALES} | angles).items():
+    for name, target in ({dim: SCALES[dim] for dim in entry.dims} | angles).items():
         if name not in dataset.parent:
             dataset.parent[name] = root[target]
 
@@ -100,6 +100,8 @@ def stored(path: str, values: Any, dtype: str) -> np.ndarray:
     if dtype == "text":
         raw = [utf8(text) for text in values]
         return np.array(raw).astype(h5py.string_dtype("utf-8", max(1, *map(len, raw))))
+    if dtype == "bytes":
+        return np.array(values, np.dtype(("S", len(values))))
     if dtype == "bool":
         return np.asarray(values).astype(bool, casting="safe").astype(np.int8)
     values = np.asarray(values).astype(np.dtype(dtype).newbyteorder("<"), casting="safe", copy=False)

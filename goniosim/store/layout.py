@@ -30,10 +30,9 @@ SIZES = {
     "row_block": "Rb",
     "column_block": "Kb",
     "checkpoint": "P",
-    "byte": "S",
 }
 
-# Bytes have none. netCDF wants the scale of a dimension in the group of its users or above it.
+# netCDF wants the scale of a dimension in the group of its users or above it.
 SCALES = {
     "direction": "direction",
     "channel": "channel",
@@ -105,7 +104,7 @@ class Dataset:
     dims : tuple of str
         Names of the axes; their lengths are in `SIZES`.
     dtype : str
-        ``float64``, ``int64``, ``bool``, ``uint8`` or ``text``.
+        ``float64``, ``int64``, ``bool``, ``text`` or ``bytes``.
     unit, meaning : str
         Written to the attributes ``units`` and ``long_name``.
     range : Range
@@ -203,7 +202,7 @@ DATASETS = (
     Dataset("cost/seconds", _COST, "float64", "s", "elapsed time of tracing, shared out", NOT_NEGATIVE),
     Dataset("cost/cpu_seconds", _COST, "float64", "s", "processor time of tracing", NOT_NEGATIVE),
     Dataset("cost/error_SAMPLED", _COST, "float64", "sr-0.5", "noise floor of the component", NOT_NEGATIVE),
-    Dataset("state", ("byte",), "uint8", "1", "what goniosim goes on from, if the run was interrupted"),
+    Dataset("state", (), "bytes", "1", "what goniosim goes on from, if the run was interrupted"),
     *CHECKSUMS,
 )
 

@@ -99,12 +99,7 @@ def read_state(path: StrPath) -> bytes | None:
         As `open_result`.
     """
     with opened(path, RESULT) as (file, ours), decoding(path, RESULT.remedy):
-        if not ours.has("state"):
-            return None
-        entry = describe("state")
-        length = access.dataset(file, "state").size or 0
-        found: bytes = values(shaped(file, "state", entry, {"byte": length}), entry).tobytes()
-        return found
+        return _state(file, ours)
 
 
 def read_scene(path: StrPath) -> Scene:
@@ -127,6 +122,14 @@ def read_scene(path: StrPath) -> Scene:
         header = _header(file, ours)
         with written_by(str(header["schema_version"]), path, RESULT):
             return validation.scene_of(str(header["config_yaml"]))
+
+
+def _state(file: h5py.File, ours: Ours) -> bytes | None:
+    if not ours.has("state"):
+        return None
+    entry = describe("state")
+    found: bytes = values(shaped(file, "state", entry, {}), entry)
+    return found
 
 
 def _header(file: h5py.File, ours: Ours) -> dict[str, str | int]:
@@ -170,6 +173,7 @@ def _result(file: h5py.File, ours: Ours, header: dict[str, Any]) -> Result:
             name: value for name, value in header.items() if name not in NOT_PROVENANCE and isinstance(value, str)
         },
         target_reached=bool(header["target_reached"]) if "target_reached" in header else None,
+        state=_state(file, ours),
     )
     validation.check(validation.GEOMETRY, result, scene)
     earlier.complete(result)

@@ -228,6 +228,11 @@ RESULT = (
         "be there for each sampled component",
         lambda result, scene: result.components.keys() - {"reflection/direct"} <= result.cost.error.keys(),
     ),
+    Rule(
+        "state",
+        "be there only if status is partial",
+        lambda result, scene: result.state is None or result.status == "partial",
+    ),
     Rule("effects", "have plain names", lambda result, scene: all(map(is_name, result.effects))),
 )
 

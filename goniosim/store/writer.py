@@ -48,7 +48,6 @@ def encode(result: Result) -> tuple[memoryview | bytes, ...]:
         "row_edges": len(result.cells.row_edges),
         "column_edges": len(result.cells.column_edges),
         "checkpoint": result.cost.checkpoints,
-        "byte": len(result.state or b""),
     }
     if batches is not None:
         sizes |= dict(zip(("batch", "row_block", "column_block"), (batches.shape[n] for n in (1, 3, 4)), strict=True))
@@ -57,7 +56,7 @@ def encode(result: Result) -> tuple[memoryview | bytes, ...]:
         for path, values in arrays(result):
             entry = describe(path)
             shape = tuple(sizes[dim] for dim in entry.dims)
-            if np.shape(values) != shape:
+            if entry.dtype != "bytes" and np.shape(values) != shape:
                 raise ValueError(f"{path} has shape {np.shape(values)}, not {shape}")
             write_dataset(file, path, values, entry)
         for path, component in components_of(result.components):
@@ -154,4 +153,4 @@ def arrays(result: Result) -> Iterator[tuple[str, Any]]:
     for sampled, error in result.cost.error.items():
         yield f"cost/error_{sampled.replace('/', '_')}", error
     if result.state is not None:
-        yield "state", np.frombuffer(result.state, np.uint8)
+        yield "state", bytes(result.state)
