@@ -66,7 +66,13 @@ class Drive:
         keep : callable, optional
             Called as ``keep(number, stopped)`` after each piece, with how many are added up: what they add up to may
             be kept then. After a stop, once.
+
+        Returns
+        -------
+        float
+            Seconds that it took.
         """
+        began = self.now()
         stop = stop or self._stop
         left = works[first:]
         local = threading.local()
@@ -109,6 +115,7 @@ class Drive:
             keep(added, True)
         for direction in sorted({one.direction for one in works} - noted):
             _finish(run, direction, note)
+        return self.now() - began
 
     def reach(self, runs, judge, instead, limit, do):
         """Do rounds of all runs in turn, in each direction until it is as accurate as asked for.

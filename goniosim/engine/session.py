@@ -153,8 +153,7 @@ class Session:
         self._current, self._added = number, first
         self._began = self.drive.now() - since
         self._from = self._began - self._spent[run]
-        self.drive.do(run, works, self._note, first=first, keep=self._keep)
-        self._took.append(self.drive.now() - self._began)
+        self._took.append(since + self.drive.do(run, works, self._note, first=first, keep=self._keep))
         self._spent[run] += self._took[-1]
         self._current, self._added, self._began = number + 1, 0, None
         return self._took[-1]
