@@ -2,10 +2,10 @@
 
 import os
 import threading
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from goniosim.errors import FewerRaysError, GoniosimError, OutputError, StoppedError
+from goniosim.errors import FewerRaysError, GoniosimError, OutputError, StoppedError, UnusableResultError
 from goniosim.parts import remove_dead
 from goniosim.writing import make_folder
 
@@ -16,11 +16,10 @@ _REMEDY = "nothing is overwritten: choose another place with -o, or replace resu
 
 @dataclass(frozen=True)
 class Job:
-    """A scene, the file its result goes to, and whether an interrupted run of it goes on."""
+    """A scene and the file its result goes to."""
 
     scene: object
     path: Path
-    goes_on: bool = False
 
     @property
     def name(self):
@@ -30,10 +29,6 @@ class Job:
     def is_finished(self, standing):
         """Whether a `goniosim.store.Standing`, if there is one, holds what is asked for."""
         return standing is not None and standing.holds(self.scene.simulation)
-
-    def goes_on_from(self, standing):
-        """Whether a `goniosim.store.Standing`, if there is one, is what an interrupted run of the same left."""
-        return standing is not None and standing.is_resumed_by(self.scene.simulation)
 
     def reserve(self):
         """Make sure that the file can be written, and keep room for it."""
@@ -97,7 +92,7 @@ def sort_out(planned, overwrite, note):
         if standing.damage:
             note(f"to be replaced: {standing.damage}")
     kept = {job.path: found[job.path] for job in planned if job.is_finished(found.get(job.path))}
-    todo = [replace(job, goes_on=job.goes_on_from(found.get(job.path))) for job in planned if job.path not in kept]
+    todo = [job for job in planned if job.path not in kept]
     for job in todo:
         refuse_newer(job.path)
         # Room is kept only for the material at work: a killed study leaves a single hidden file behind.
@@ -218,8 +213,7 @@ def run(jobs, progress, signals, verbose, overwrite, every):
             try:
                 result = _simulate(job, label, progress, signals, overwrite, every)
             except StoppedError:
-                left = f"; {job.path} stays as it is" if job.goes_on else ""
-                progress.note(f"stopped by {signals.reason} before the first rays{left}")
+                progress.note(f"stopped by {signals.reason} before the first rays")
                 return
             try:
                 write_result(result, job.path, overwrite=overwrite, reservation=signals.reservation)
@@ -242,7 +236,7 @@ def run(jobs, progress, signals, verbose, overwrite, every):
 
 def _simulate(job, label, progress, signals, overwrite, every):
     from goniosim.engine import simulate
-    from goniosim.store import write_result
+    from goniosim.store import keeper
 
     def report(done_rays, total_rays):
         if not signals.gathering:
@@ -250,31 +244,28 @@ def _simulate(job, label, progress, signals, overwrite, every):
             signals.gathering = True
         progress.update(done_rays, total_rays)
 
-    def keep(result):
-        try:
-            write_result(result, job.path, overwrite=overwrite, rescued=False)
-        except FewerRaysError:
-            # What stands there is worth more until then.
-            pass
-        except OutputError as error:
-            progress.note(f"{label}: no checkpoint: {error}")
-
-    resume = _left_by_another(job, progress) if job.goes_on else None
+    keep = keeper(job.path, overwrite, lambda error: progress.note(f"{label}: no checkpoint: {error}"))
+    resume = None if overwrite else _left(job, progress)
     return simulate(job.scene, progress=report, stop=signals.event, checkpoint=keep, every=every, resume=resume)
 
 
-def _left_by_another(job, progress):
-    """What an interrupted run goes on from; None, with a word on why, if it cannot."""
+def _left(job, progress):
+    """What an interrupted run goes on from, with a word on it; None if there is nothing, or it cannot."""
     from goniosim.engine import checked_state
     from goniosim.report.text import counts
-    from goniosim.store import look_at, read_state
+    from goniosim.store import look_at, state_left
 
     try:
-        state = read_state(job.path)
-        checked_state(state)
-        progress.note(f"{job.path}: goes on from {counts(look_at(job.path, job.scene).rays)} rays per direction")
-    except GoniosimError as error:
+        state = state_left(job.path, job.scene)
+        if state is not None:
+            checked_state(state)
+            held = counts(look_at(job.path, job.scene).rays)
+            progress.note(f"{job.path}: goes on from {held} rays per direction")
+    except UnusableResultError as error:
         progress.note(f"{job.path}: begins anew: {error}")
+        return None
+    except GoniosimError:
+        # Whatever it is, `sort_out` has spoken of it.
         return None
     return state
 

@@ -102,8 +102,8 @@ def simulate(
             raise
 
 
-def trace(scene: Scene, label: str, shown: Any, asked: Stop) -> Result:
-    """Simulate one scene; from the first rays on there may be something to keep."""
+def trace(scene: Scene, label: str, shown: Any, asked: Stop, **kept: Any) -> Result:
+    """Simulate one scene; from the first rays on there may be something to keep, see ``kept`` of the engine."""
     from .. import engine
 
     began = False
@@ -115,7 +115,7 @@ def trace(scene: Scene, label: str, shown: Any, asked: Stop) -> Result:
             shown.begin(label)
         shown.update(done_rays, total_rays)
 
-    result: Result = engine.simulate(scene, progress=report, stop=asked)
+    result: Result = engine.simulate(scene, progress=report, stop=asked, **kept)
     return result
 
 

@@ -7,10 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
-from ..errors import FewerRaysError, OutputError, StoppedError
+from ..errors import FewerRaysError, GoniosimError, OutputError, StoppedError
 from ..result import Result
 from ..scene import Scene, Source, as_scenes, total_rays, with_arguments
-from ..store import look_at, reserve_output, write_result
+from ..store import keeper, look_at, reserve_output, state_left, write_result
 from ..writing import StrPath, make_folder
 from .progress import Progress, progress_of
 from .simulation import check_stop, trace
@@ -86,7 +86,8 @@ def simulate_study(
         What `load_scenes` takes, or scenes.
     folder : path-like, optional
         Write each result into ``NAME.h5`` there as soon as it is done, instead of keeping all in memory.
-        Files that hold the rays or the accuracy asked for, or more, are left alone: calling again goes on.
+        Files that hold the rays or the accuracy asked for, or more, are left alone, and the one that was at work goes
+        on from its last checkpoint, a minute ago at most: calling again goes on.
     overwrite : bool
         Leave no file alone: simulate all anew, and replace whatever results stand there.
     rays, seed, threads, estimator, target, of, max_rays, max_time, progress, stop
@@ -173,11 +174,25 @@ def _into_file(paths: Mapping[str, Path], overwrite: bool, scene: Scene, label: 
 
     path = paths[scene.material.name]
     with reserve_output(path, file_size(scene)) as reservation:
-        result = trace(scene, label, shown, asked)
+        kept = {"checkpoint": keeper(path, overwrite), "resume": None if overwrite else _left(path, scene)}
+        result = trace(scene, label, shown, asked, **kept)
         # Ended early it may have fewer rays than an earlier file, which then stays.
         with contextlib.suppress(FewerRaysError):
             write_result(result, path, overwrite=overwrite, reservation=reservation)
     return path
+
+
+def _left(path: Path, scene: Scene) -> bytes | None:
+    """What an interrupted run goes on from; None if there is nothing of it, or of another version."""
+    from ..engine import checked_state
+
+    try:
+        state = state_left(path, scene)
+        if state is not None:
+            checked_state(state)
+    except GoniosimError:
+        return None
+    return state
 
 
 def _finished(scenes: Iterable[Scene], paths: Mapping[str, Path]) -> list[str]:

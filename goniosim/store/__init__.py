@@ -7,6 +7,7 @@ from goniosim.store.keeping import Standing, look_at, refuse_newer
 from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_be_models_file, open_models
 from goniosim.store.output import Reservation, reserve_output
 from goniosim.store.reader import open_result, read_header, read_scene, read_state
+from goniosim.store.resuming import keeper, state_left
 from goniosim.store.saving import write_result
 from goniosim.store.size import predicted_size
 
@@ -17,6 +18,7 @@ __all__ = [
     "Standing",
     "hdf5_version",
     "is_models_file",
+    "keeper",
     "look_at",
     "may_be_models_file",
     "open_models",
@@ -27,6 +29,7 @@ __all__ = [
     "read_state",
     "refuse_newer",
     "reserve_output",
+    "state_left",
     "to_datatree",
     "write_result",
 ]

@@ -1,6 +1,8 @@
 """Runs that are stopped or killed, and go on: by the same command, to the same numbers."""
 
+import contextlib
 import signal
+import subprocess
 import sys
 import threading
 
@@ -44,7 +46,8 @@ def wait_for(process, words):
 def numbers(result):
     """Everything but times."""
     parts = [part for one in result.components.values() for part in (one, *one.orders.values())]
-    arrays = [getattr(part, name) for part in parts for name in ("energy", "stderr", "hits", "albedo_stderr")]
+    names = ("energy", "stderr", "hits", "batches", "node_bias", "albedo_stderr")
+    arrays = [getattr(part, name) for part in parts for name in names if getattr(part, name) is not None]
     return [result.rays, *arrays, *result.audit.energy.values(), *result.audit.stderr.values(), result.cost.rays]
 
 
@@ -109,3 +112,30 @@ def test_what_another_version_left_is_begun_anew(python, goniosim, folder, whole
     code, _, err = goniosim(*ASKED)
     assert code == 0 and "small.h5: begins anew: the interrupted run was of another version of goniosim" in err
     assert same(open_result(folder / "small.h5"), whole)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("estimator", "rays", "kills"), [("analog", 5e8, 40), ("auto", 2e7, 10)])
+def test_killed_at_fifty_moments(python, goniosim, folder, estimator, rays, kills):
+    """The file always opens, never holds less than before, and ends as if nothing had happened."""
+    asked = ("simulate", "scene.yaml", "--estimator", estimator, "--rays", f"{rays:g}")
+    whole = simulate(parse_scene(SCENE), rays=rays, estimator=estimator)
+    moments = np.random.default_rng(1).uniform(0.5, 2.5, kills)
+    path, held = folder / "small.h5", 0
+    for moment in moments:
+        process = python(_EAGER, *asked, "--checkpoint", "0.1s", "--threads", "1")
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(moment)
+        process.kill()
+        process.communicate()
+        if path.exists():
+            found = open_result(path)
+            assert found.rays[0] >= held
+            held = found.rays[0]
+            if found.status == "complete":
+                assert same(found, whole)
+                path.unlink()
+                held = 0
+    assert goniosim(*asked)[0] == 0
+    assert same(open_result(path), whole)
+    assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "small.h5", "study.yaml"]

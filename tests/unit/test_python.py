@@ -149,7 +149,7 @@ def test_ctrl_c_twice_is_a_keyboard_interrupt():
 def test_ctrl_c_with_nothing_gathered_is_a_keyboard_interrupt(monkeypatch, simulate, what, tracing):
     """At once while kernels compile; after a moment once rays are on their way."""
 
-    def engine(scene, progress, stop):
+    def engine(scene, progress, stop, **_):
         if tracing:
             progress(0, 1000)
         signal.raise_signal(signal.SIGINT)
@@ -224,11 +224,12 @@ def test_a_study_in_a_folder_goes_on_where_it_ended(tmp_path):
     first = goniosim.simulate_study(STUDY, folder=folder, rays=5e5, threads=1, progress=press(after=1_100_000))
     assert first == {name: paths[name] for name in NAMES[:2]}
     assert [goniosim.open_result(path).status for path in first.values()] == ["complete", "partial"]
-    (folder / "coat-0.2.h5").unlink()
     before = paths["coat-0.1"].stat()
     assert goniosim.simulate_study(STUDY, folder=folder, rays=5e5) == paths
     assert paths["coat-0.1"].stat().st_mtime_ns == before.st_mtime_ns
     assert {goniosim.open_result(path).status for path in paths.values()} == {"complete"}
+    whole = goniosim.simulate(goniosim.load_scenes(STUDY)[1], rays=5e5)
+    assert same(goniosim.open_result(paths["coat-0.2"]), whole)
     assert sorted(folder.iterdir()) == sorted(paths.values())
 
 

@@ -1,0 +1,65 @@
+"""Partial results while a run goes on, and what an interrupted run left at the place of its output."""
+
+from collections.abc import Callable
+
+from goniosim.errors import FewerRaysError, OutputError
+from goniosim.result import Result
+from goniosim.scene import Scene
+from goniosim.store.keeping import look_at
+from goniosim.store.reader import read_state
+from goniosim.store.saving import write_result
+from goniosim.writing import StrPath
+
+
+def keeper(
+    path: StrPath, overwrite: bool = False, failed: Callable[[OutputError], None] = lambda _: None
+) -> Callable[[Result], None]:
+    """What writes a partial result to a path, time and again.
+
+    Parameters
+    ----------
+    path : path-like
+    overwrite : bool
+        As for `write_result`.
+    failed : callable
+        Called with the error if it cannot be written: the run goes on all the same.
+
+    Returns
+    -------
+    callable
+        Called with a `goniosim.result.Result`; it leaves alone what is worth more.
+    """
+
+    def keep(result: Result) -> None:
+        try:
+            write_result(result, path, overwrite=overwrite, rescued=False)
+        except FewerRaysError:
+            pass
+        except OutputError as error:
+            failed(error)
+
+    return keep
+
+
+def state_left(path: StrPath, scene: Scene) -> bytes | None:
+    """What an interrupted run of just this scene and simulation left at a path.
+
+    Parameters
+    ----------
+    path : path-like
+    scene : goniosim.scene.Scene
+
+    Returns
+    -------
+    bytes or None
+        As `goniosim.engine.simulate` takes it; None if there is none.
+
+    Raises
+    ------
+    DamagedFileError
+        If the file was altered.
+    OutputError
+        If something that is no result stands there.
+    """
+    standing = look_at(path, scene)
+    return read_state(path) if standing is not None and standing.is_resumed_by(scene.simulation) else None
