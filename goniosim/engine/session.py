@@ -95,7 +95,23 @@ class Session:
         return {"estimator_choice": "; ".join(map(str, self.choices)), **(gained if found else {})}
 
     def run(self):
-        """Do all runs."""
+        """Do all runs.
+
+        Raises
+        ------
+        goniosim.errors.UnusableResultError
+            If it cannot go on from ``resumed``.
+        """
+        try:
+            self._run()
+        except (ValueError, TypeError, LookupError, AttributeError) as error:
+            if self.resumed is None:
+                raise
+            raise _misfit(error) from error
+        if self.resumed is not None and not self.drive.stopped:
+            raise _misfit("it was interrupted behind its end")
+
+    def _run(self):
         asked, before = self.simulation, self.resumed or {"journal": (), "seconds": 0.0, "done": 0}
         self._journal = Journal(before["journal"])
         self.drive.go_on(before["seconds"], before["done"])
@@ -144,30 +160,27 @@ class Session:
         if before is not None and number < before["calls"]:
             self._took.append(before["took"][number])
             return self._took[-1]
-        first, since = 0, 0.0
-        if before is not None:
-            self._take_over(before)
-            first, since = before["added"], before["within"]
+        self._current = number
+        since = 0.0 if before is None else self._take_over(before)
         if run not in self._ready:
             self._begin(run)
-        self._current, self._added = number, first
         self._began = self.drive.now() - since
         self._from = self._began - self._spent[run]
-        self._took.append(since + self.drive.do(run, works, self._note, first=first, keep=self._keep))
+        self.drive.do(run, works, self._note, first=self._added, keep=self._keep)
+        self._took.append(self.drive.now() - self._began)
         self._spent[run] += self._took[-1]
         self._current, self._added, self._began = number + 1, 0, None
         return self._took[-1]
 
     def _take_over(self, state):
-        try:
-            for run, values, spent in zip(self.runs, state["runs"], state["spent"], strict=True):
-                run.restore(values)
-                self._spent[run] = float(spent)
-        except (ValueError, TypeError, LookupError, AttributeError) as error:
-            raise UnusableResultError(
-                f"what was left of the interrupted run does not fit the scene: {error}"
-            ) from error
+        """Go on from a state; returns the seconds of its last call."""
+        for run, values, spent in zip(self.runs, state["runs"], state["spent"], strict=True):
+            run.restore(values)
+            self._spent[run] = float(spent)
+        self._added = int(state["added"])
+        since = float(state["within"])
         self.resumed = None
+        return since
 
     def _keep(self, added, stopped):
         self._added = added
@@ -207,9 +220,9 @@ class Session:
         self.choices = [Choice(estimator, tuple(sides), reason) for estimator, sides, reason in state["choices"]]
         self.runs = [choice.start(self.plan, self.simulation.seed) for choice in self.choices]
         self.reached = None if self.simulation.target is None else False
-        self._take_over(state)
+        self._began = self.drive.now() - self._take_over(state)
         for run in self.runs:
-            self._from = self.drive.now() - self._spent[run] - float(state["within"])
+            self._from = self._began - self._spent[run]
             for direction in range(len(self.plan.theta_deg)):
                 run.finish_round(direction)
                 noted = run.spending.checkpoints[direction]
@@ -263,3 +276,7 @@ class Session:
         if self.simulation.estimator != AUTO or floor < MOST_OF_TARGET * target.relative_error:
             return None
         return f"{run.name}: its nodes may be off by {100.0 * floor:.2g} %, which leaves no room in the target"
+
+
+def _misfit(why):
+    return UnusableResultError(f"what was left of the interrupted run does not fit the scene: {why}")
