@@ -238,14 +238,15 @@ def _simulate(job, label, progress, signals, overwrite, every):
     from goniosim.engine import simulate
     from goniosim.store import keeper
 
+    resume = None if overwrite else _left(job, progress)
+
     def report(done_rays, total_rays):
         if not signals.gathering:
-            progress.begin(label)
+            progress.begin(label, inherited=0 if resume is None else done_rays)
             signals.gathering = True
         progress.update(done_rays, total_rays)
 
     keep = keeper(job.path, overwrite, lambda error: progress.note(f"{label}: no checkpoint: {error}"))
-    resume = None if overwrite else _left(job, progress)
     return simulate(job.scene, progress=report, stop=signals.event, checkpoint=keep, every=every, resume=resume)
 
 

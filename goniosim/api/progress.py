@@ -49,7 +49,7 @@ class _Calls:
         self._earlier_rays = 0
         self._rays = 0
 
-    def begin(self, description: str) -> None:
+    def begin(self, description: str, inherited: int = 0) -> None:
         """A new material: earlier rays stay done."""
         self._earlier_rays = self._rays
 

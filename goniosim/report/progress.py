@@ -40,8 +40,8 @@ def make_progress(total_rays, quiet=False):
 class Silent:
     """Shows nothing."""
 
-    def begin(self, description):
-        """Name the material whose rays come next."""
+    def begin(self, description, inherited=0):
+        """Name the material whose rays come next; so many of them are there since before."""
 
     def update(self, done_rays, total_rays):
         """Say how far this material has come."""
@@ -60,11 +60,13 @@ class _Shown:
         self.total_rays = total_rays
         self.earlier_rays = 0
         self.rays = 0
+        self.inherited = 0
         self.stream = stream
 
-    def begin(self, description):
-        """Name the material whose rays come next."""
+    def begin(self, description, inherited=0):
+        """Name the material whose rays come next; so many of them are there since before, and say nothing of speed."""
         self.earlier_rays = self.rays
+        self.inherited += inherited
         self.description = description
 
     def _try(self, show, *arguments, **options):
@@ -94,10 +96,13 @@ class Bar(_Shown):
         super().__init__(total_rays, stream or sys.stderr)
         self._bar = None
 
-    def begin(self, description):
-        """Name the material whose rays come next."""
-        super().begin(description)
+    def begin(self, description, inherited=0):
+        """Name the material whose rays come next; so many of them are there since before."""
+        super().begin(description, inherited)
         self._try(self._show_description)
+        if self._bar is not None:
+            # Left out of the rate.
+            self._bar.initial = self.inherited
 
     def _show_description(self):
         if self._bar is None:
@@ -155,9 +160,9 @@ class LogLines(_Shown):
         self._started = None
         self._pace = FIRST_LINE
 
-    def begin(self, description):
-        """Name the material whose rays come next."""
-        super().begin(description)
+    def begin(self, description, inherited=0):
+        """Name the material whose rays come next; so many of them are there since before."""
+        super().begin(description, inherited)
         if self._started is None:
             self._started = self._clock()
             self._next_line = self._started + self._pace
@@ -170,7 +175,7 @@ class LogLines(_Shown):
             return
         self._pace = min(2.0 * self._pace, SLOWEST_PACE)
         self._next_line = now + self._pace
-        per_second = self.rays / (now - self._started)
+        per_second = (self.rays - self.inherited) / (now - self._started)
         line = f"{self.description}: {self._share()} rays"
         if per_second > 0.0:
             line += f", {text.rate(per_second)}"

@@ -86,7 +86,8 @@ def test_stopped_twice_it_goes_on_to_the_same_numbers(python, goniosim, folder, 
 
 def test_a_time_limit_is_a_request_to_stop(python, folder, whole):
     """Kernels are compiled by now; more rays than any machine traces."""
-    process = python(_IMPATIENT, "simulate", "scene.yaml", "--rays", "1e11", "--time-limit", "8s")
+    asked = ("simulate", "scene.yaml", "--estimator", "analog", "--rays", "1e11")
+    process = python(_IMPATIENT, *asked, "--time-limit", "8s")
     _, err = process.communicate(timeout=300)
     assert process.returncode == 75
     assert "stopped by the time limit: small.h5 holds" in err

@@ -48,6 +48,20 @@ def test_log_lines_tell_share_rate_and_time_left():
     assert stream.getvalue().endswith("metal: 25 % of 4e6 rays, 200 k rays/s, about 15 s left\n")
 
 
+def test_rays_that_were_there_before_say_nothing_of_speed():
+    log, clock, stream = _log(4_000_000)
+    log.begin("metal", inherited=1_000_000)
+    log.update(1_000_000, 4_000_000)
+    clock.now += 5.0
+    log.update(2_000_000, 4_000_000)
+    assert stream.getvalue().endswith("metal: 50 % of 4e6 rays, 200 k rays/s, about 10 s left\n")
+    bar = progress.Bar(4_000_000, io.StringIO())
+    bar.begin("metal", inherited=1_000_000)
+    bar.update(2_000_000, 4_000_000)
+    counted = bar._bar.format_dict
+    assert (counted["n"], counted["initial"]) == (2_000_000, 1_000_000)
+
+
 def test_log_lines_tell_rays_and_rate_where_a_target_decides():
     log, clock, stream = _log(None)
     log.begin("metal")
