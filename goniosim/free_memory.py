@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from .containers import groups, text
+
 try:
     import resource
 except ImportError:  # Windows
@@ -43,29 +45,18 @@ def _available(root: Path) -> list[tuple[int, str]]:
 def _container(root: Path) -> list[tuple[int, str]]:
     """What is left in this process's group and in those around it."""
     found = []
-    for line in _text(root / "proc/self/cgroup").splitlines():
-        _, _, rest = line.partition(":")
-        controllers, mark, path = rest.partition(":")
-        # What stands in for the kernel in some containers may say other things here.
-        if not mark or (controllers and "memory" not in controllers.split(",")):
-            continue
-        top = root / "sys/fs/cgroup" / ("memory" if controllers else "")
-        group = top / path.lstrip("/")
-        # Within a container its own group is at the top, whatever its path is outside.
-        for folder in (group, *group.parents):
-            if folder == top.parent:
-                break
-            found += _left(folder, *(_V1 if controllers else _V2))
+    for folder, is_first in groups("memory", root):
+        found += _left(folder, *(_V1 if is_first else _V2))
     return [(left, "left of the container's limit") for left in found]
 
 
 def _left(folder: Path, limit: str, use: str, reclaimable: tuple[str, ...]) -> list[int]:
     try:
         # A group without a limit says "max", or a number near 2^63.
-        room = int(_text(folder / limit)) - int(_text(folder / use))
+        room = int(text(folder / limit)) - int(text(folder / use))
     except ValueError:
         return []
-    rows = [line.split() for line in _text(folder / "memory.stat").splitlines()]
+    rows = [line.split() for line in text(folder / "memory.stat").splitlines()]
     statistics = {row[0]: int(row[1]) for row in rows if len(row) == 2 and row[1].isdecimal()}
     return [max(0, room + sum(statistics.get(name, 0) for name in reclaimable))]
 
@@ -80,12 +71,5 @@ def _address_space(root: Path) -> list[tuple[int, str]]:
 
 def _fields(path: Path) -> dict[str, int]:
     """Entries such as ``VmRSS:  1234 kB``, in bytes."""
-    rows = [line.split() for line in _text(path).splitlines()]
+    rows = [line.split() for line in text(path).splitlines()]
     return {row[0].rstrip(":"): 1024 * int(row[1]) for row in rows if len(row) == 3 and row[2] == "kB"}
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text()
-    except (OSError, UnicodeDecodeError):
-        return ""

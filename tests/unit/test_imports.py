@@ -21,6 +21,7 @@ MODULES = {"goniosim": ROOT / "goniosim", "goniosim_cli": ROOT / "cli"}
 GROUND = {
     "accuracy",
     "albedo",
+    "containers",
     "cores",
     "effective",
     "errors",
