@@ -65,7 +65,8 @@ class Memory:
     estimators : int
         What all directions share of estimators other than analog, such as the kernels of operators.
     state : int
-        What an interrupted run goes on from, alone and in its file.
+        What an interrupted run goes on from, alone and in its file; left out where there is no room for it, so that
+        it belongs to no phase.
     """
 
     program: int
@@ -85,8 +86,7 @@ class Memory:
     def phases(self):
         """Names of what is held at the same time, for every phase."""
         held = ("program", "cells", "direct", "tallies", "audit", "scratch")
-        traced, found = (*held, "threads", "queues", "estimators"), (*held, "result", "state")
-        return traced, found, ("program", "result", "file", "state")
+        return (*held, "threads", "queues", "estimators"), (*held, "result"), ("program", "result", "file")
 
     @property
     def checkpoint(self):
@@ -264,7 +264,6 @@ _PURPOSE = {
     "file": "the file while it is written",
     "scratch": "sums of tallies",
     "estimators": "what the estimator prepares",
-    "state": "what an interrupted run goes on from",
 }
 
 

@@ -44,6 +44,8 @@ class Session:
     drive : goniosim.engine.drive.Drive
     checkpoint : callable, optional
         Called with the session after each piece of work, when its `state` may be kept.
+    has_room : callable, optional
+        Tells whether there is memory for what it leaves when it is stopped.
     resumed : dict, optional
         The `state` in which a session of the same simulation was interrupted.
     choices : list of goniosim.engine.estimators.choose.Choice
@@ -66,6 +68,7 @@ class Session:
     runs: list = field(default_factory=list)
     audit: AnalogRun | None = None
     reached: bool | None = None
+    has_room: object = None
     left: bytes | None = None
     _ready: set = field(default_factory=set)
     _spent: dict = field(default_factory=dict)
@@ -125,7 +128,7 @@ class Session:
             self.reached = self.drive.reach(self.runs, self._judge, self._instead, limit, self._do)
         if not self.finished and self.left is None:
             # Stopped between two pieces of work.
-            self.left = pack(self.state())
+            self._leave()
         # Short, if somebody waits for an end that is none yet.
         rays = AUDIT_RAYS if self.finished else LEAST_AUDIT_RAYS
         self.audit = next((run for run in self.runs if run.audits), None) or self._audited(rays)
@@ -185,9 +188,13 @@ class Session:
     def _keep(self, added, stopped):
         self._added = added
         if stopped:
-            self.left = self.left or pack(self.state())
+            self._leave()
         elif self.checkpoint is not None:
             self.checkpoint(self)
+
+    def _leave(self):
+        if self.left is None and (self.has_room is None or self.has_room()):
+            self.left = pack(self.state())
 
     def state(self):
         """All that is needed to go on after the piece of work that was added up last, as a tree for `packing.pack`.

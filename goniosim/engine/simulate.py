@@ -106,12 +106,15 @@ def _simulate(scene, progress, stop, checkpoint, every, resume):
     warm_up(scene)
     direct = _integrate_direct(plan, threads, stop)
 
-    enough = memory_needed(scene).checkpoint
+    needed = memory_needed(scene)
+
+    def has_room(n_bytes):
+        # Rather no checkpoint than the end of the run.
+        free = free_memory()
+        return free is None or free[0] >= n_bytes
 
     def keep(session):
-        free = free_memory()
-        if free is not None and free[0] < enough:
-            # Rather none than the end of the run.
+        if not has_room(needed.checkpoint):
             return
         looked_at = Session(plan, scene.simulation, Drive(1, threading.Event(), lambda done, total: None))
         looked_at.look_at(session.state())
@@ -120,6 +123,7 @@ def _simulate(scene, progress, stop, checkpoint, every, resume):
 
     keeping = None if checkpoint is None else Checkpoints(every, keep)
     session = Session(plan, scene.simulation, Drive(threads, stop, _progress_of(scene, progress)), keeping, before)
+    session.has_room = lambda: has_room(needed.state + needed.result + needed.file)
     session.run()
     if not any(session.rays):
         raise StoppedError("stopped before the first rays were through: there is nothing to keep")
