@@ -254,21 +254,20 @@ def _left(job, progress):
     """What an interrupted run goes on from, with a word on it; None if there is nothing, or it cannot."""
     from goniosim.engine import checked_state
     from goniosim.report.text import counts
-    from goniosim.store import look_at, state_left
+    from goniosim.store import state_left
 
     try:
-        state = state_left(job.path, job.scene)
-        if state is not None:
+        if left := state_left(job.path, job.scene):
+            state, rays = left
             checked_state(state)
-            held = counts(look_at(job.path, job.scene).rays)
-            progress.note(f"{job.path}: goes on from {held} rays per direction")
+            progress.note(f"{job.path}: goes on from {counts(rays)} rays per direction")
+            return state
     except UnusableResultError as error:
         progress.note(f"{job.path}: begins anew: {error}")
-        return None
     except GoniosimError:
         # Whatever it is, `sort_out` has spoken of it.
-        return None
-    return state
+        pass
+    return None
 
 
 def _warm_up(scene, progress):

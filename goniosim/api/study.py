@@ -187,12 +187,12 @@ def _left(path: Path, scene: Scene) -> bytes | None:
     from ..engine import checked_state
 
     try:
-        state = state_left(path, scene)
-        if state is not None:
-            checked_state(state)
+        if left := state_left(path, scene):
+            checked_state(left[0])
+            return left[0]
     except GoniosimError:
-        return None
-    return state
+        pass
+    return None
 
 
 def _finished(scenes: Iterable[Scene], paths: Mapping[str, Path]) -> list[str]:

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+import numpy as np
+
 from goniosim.errors import FewerRaysError, OutputError
 from goniosim.result import Result
 from goniosim.scene import Scene
@@ -41,7 +43,7 @@ def keeper(
     return keep
 
 
-def state_left(path: StrPath, scene: Scene) -> bytes | None:
+def state_left(path: StrPath, scene: Scene) -> tuple[bytes, np.ndarray] | None:
     """What an interrupted run of just this scene and simulation left at a path.
 
     Parameters
@@ -51,8 +53,8 @@ def state_left(path: StrPath, scene: Scene) -> bytes | None:
 
     Returns
     -------
-    bytes or None
-        As `goniosim.engine.simulate` takes it; None if there is none.
+    (bytes, ndarray of int64, shape (M,)) or None
+        As `goniosim.engine.simulate` takes it, and the rays of each direction; None if there is none.
 
     Raises
     ------
@@ -62,4 +64,7 @@ def state_left(path: StrPath, scene: Scene) -> bytes | None:
         If something that is no result stands there.
     """
     standing = look_at(path, scene)
-    return read_state(path) if standing is not None and standing.is_resumed_by(scene.simulation) else None
+    if standing is None or standing.rays is None or not standing.is_resumed_by(scene.simulation):
+        return None
+    state = read_state(path)
+    return None if state is None else (state, standing.rays)

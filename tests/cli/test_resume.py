@@ -13,34 +13,20 @@ from goniosim.engine import simulate
 from goniosim.report.text import counts
 from goniosim.scene import parse_scene
 from goniosim.store import open_result, read_state
+from impatient import IMPATIENT, wait_for
 from small import SCENE
 
 # Some seconds of work, on any machine.
 RAYS = "1e8"
 ASKED = ("simulate", "scene.yaml", "--estimator", "analog", "--rays", RAYS)
-_IMPATIENT = """
-import goniosim.report.progress
-goniosim.report.progress.FIRST_LINE = 0.1
-from goniosim_cli.main import main
-main()
-"""
 # Checkpoints as often as can be, however much of the time they take.
 _EAGER = (
     """
 import goniosim.engine.checkpoints
 goniosim.engine.checkpoints.MOST = 1.0
 """
-    + _IMPATIENT
+    + IMPATIENT
 )
-
-
-def wait_for(process, words):
-    guard = threading.Timer(300.0, process.kill)
-    guard.start()
-    try:
-        assert any(words in line for line in process.stderr), f"{words!r} never came"
-    finally:
-        guard.cancel()
 
 
 def numbers(result):
@@ -62,7 +48,7 @@ def whole():
 
 
 def test_stopped_twice_it_goes_on_to_the_same_numbers(python, goniosim, folder, whole):
-    process = python(_IMPATIENT, *ASKED)
+    process = python(IMPATIENT, *ASKED)
     wait_for(process, f"% of {RAYS} rays")
     process.send_signal(signal.SIGUSR1)
     _, err = process.communicate()
@@ -70,7 +56,7 @@ def test_stopped_twice_it_goes_on_to_the_same_numbers(python, goniosim, folder, 
     assert "stopped by SIGUSR1: small.h5 holds" in err and "the same command goes on" in err
     first = open_result(folder / "small.h5")
     assert first.status == "partial" and read_state(folder / "small.h5") is not None
-    process = python(_IMPATIENT, *ASKED, "--threads", "1")
+    process = python(IMPATIENT, *ASKED, "--threads", "1")
     wait_for(process, f"small.h5: goes on from {counts(first.rays)} rays per direction")
     wait_for(process, f"% of {RAYS} rays")
     process.terminate()
@@ -87,7 +73,7 @@ def test_stopped_twice_it_goes_on_to_the_same_numbers(python, goniosim, folder, 
 def test_a_time_limit_is_a_request_to_stop(python, folder, whole):
     """Kernels are compiled by now; more rays than any machine traces."""
     asked = ("simulate", "scene.yaml", "--estimator", "analog", "--rays", "1e11")
-    process = python(_IMPATIENT, *asked, "--time-limit", "8s")
+    process = python(IMPATIENT, *asked, "--time-limit", "8s")
     _, err = process.communicate(timeout=300)
     assert process.returncode == 75
     assert "stopped by the time limit: small.h5 holds" in err
@@ -113,7 +99,7 @@ def test_a_killed_run_goes_on_from_its_last_checkpoint(python, goniosim, folder,
 
 
 def test_what_another_version_left_is_begun_anew(python, goniosim, folder, whole, monkeypatch):
-    process = python(_IMPATIENT, *ASKED)
+    process = python(IMPATIENT, *ASKED)
     wait_for(process, f"% of {RAYS} rays")
     process.terminate()
     process.communicate()

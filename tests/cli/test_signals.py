@@ -2,40 +2,16 @@
 
 import json
 import signal
-import threading
 
 import pytest
 from goniosim_cli.signals import WARNINGS, undisturbed
 
 from goniosim.store import open_result, write_result
+from impatient import IMPATIENT, wait_for
 from synthetic import make_result
 
 # More than any machine traces during a test.
 FOREVER = "1e11"
-
-
-# The first line on progress comes early: it tells that something is gathered.
-_IMPATIENT = """
-import goniosim.report.progress
-goniosim.report.progress.FIRST_LINE = 0.1
-from goniosim_cli.main import main
-main()
-"""
-
-
-def _wait_for(process, words):
-    """Read standard error until a line holds the words; stop the process if that never happens."""
-    guard = threading.Timer(300.0, process.kill)
-    guard.start()
-    try:
-        lines = []
-        for line in process.stderr:
-            lines.append(line)
-            if words in line:
-                return lines
-        pytest.fail(f"{words!r} never came: {''.join(lines)}")
-    finally:
-        guard.cancel()
 
 
 @pytest.mark.parametrize(
@@ -48,8 +24,8 @@ def _wait_for(process, words):
     ],
 )
 def test_what_was_gathered_is_kept(python, folder, signum, code, estimator):
-    process = python(_IMPATIENT, "simulate", "scene.yaml", "--rays", FOREVER, "--estimator", estimator)
-    _wait_for(process, f"% of {FOREVER} rays")
+    process = python(IMPATIENT, "simulate", "scene.yaml", "--rays", FOREVER, "--estimator", estimator)
+    wait_for(process, f"% of {FOREVER} rays")
     process.send_signal(signum)
     out, err = process.communicate()
     assert process.returncode == code
@@ -65,8 +41,8 @@ def test_what_was_gathered_is_kept(python, folder, signum, code, estimator):
 def test_a_stopped_study_keeps_its_part_and_goes_on_later(python, goniosim, folder):
     asked = ("simulate", "study.yaml", "--estimator", "analog", "-o", "out")
     goniosim(*asked, "-q", "--rays", "1e3")
-    process = python(_IMPATIENT, *asked, "--rays", FOREVER)
-    _wait_for(process, "1/3 coat-0.1: ")
+    process = python(IMPATIENT, *asked, "--rays", FOREVER)
+    wait_for(process, "1/3 coat-0.1: ")
     process.send_signal(signal.SIGINT)
     process.communicate()
     assert process.returncode == 130
@@ -88,9 +64,9 @@ main()
 """
 
 
-def test_before_the_first_rays_there_is_nothing_to_keep_and_nothing_to_wait_for(python, folder):
+def test_before_the_first_rays_there_is_nothing_to_keep_and_nothing_towait_for(python, folder):
     process = python(_SLOW_COMPILER, "simulate", "scene.yaml")
-    _wait_for(process, "preparing the kernels")
+    wait_for(process, "preparing the kernels")
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -117,9 +93,9 @@ main()
 
 def test_a_second_ctrl_c_ends_at_once(python, folder):
     process = python(_DEAF_ENGINE, "simulate", "scene.yaml")
-    _wait_for(process, "tracing")
+    wait_for(process, "tracing")
     process.send_signal(signal.SIGINT)
-    _wait_for(process, "asked to stop")
+    wait_for(process, "asked to stop")
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -129,7 +105,7 @@ def test_a_second_ctrl_c_ends_at_once(python, folder):
 
 def test_one_signal_delivered_twice_is_one(python, folder):
     process = python(_DEAF_ENGINE.replace("time.sleep(600)", "raise SystemExit(99)"), "simulate", "scene.yaml")
-    _wait_for(process, "tracing")
+    wait_for(process, "tracing")
     process.send_signal(signal.SIGTERM)
     process.send_signal(signal.SIGTERM)
     process.communicate(timeout=60)
@@ -145,7 +121,7 @@ def test_a_comparison_that_is_stopped_leaves_nothing_unfinished(start, folder):
     (folder / "report" / "errors.json").write_text(earlier)
     (folder / "report" / "errors.csv").write_text("the earlier table")
     process = start("compare", "plastic.h5", "-o", "report", "--models", "ww09", "--subcells", "1")
-    _wait_for(process, "drawing")
+    wait_for(process, "drawing")
     process.send_signal(signal.SIGTERM)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 143
