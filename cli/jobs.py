@@ -179,7 +179,7 @@ def require_room(planned):
     reserve_output(paths[0], sum(file_size(job.scene) for job in planned)).release()
 
 
-def run(jobs, progress, signals, verbose, overwrite, every):
+def run(jobs, progress, signals, overwrite, every, verbose):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped.
 
     Parameters
@@ -187,9 +187,10 @@ def run(jobs, progress, signals, verbose, overwrite, every):
     jobs : list of Job
     progress : goniosim.report.progress
     signals : goniosim_cli.signals.StopSignals
-    verbose, overwrite : bool
+    overwrite : bool
     every : float
         Seconds between two checkpoints.
+    verbose : bool
     """
     from goniosim._jit.folder import notices
     from goniosim.report.simulation.forecast import effects_text

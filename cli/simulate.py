@@ -37,12 +37,19 @@ from .signals import StopSignals
 )
 @click.option("--only", multiple=True, metavar="MATERIAL", help="Of a study, only this material; may be repeated.")
 @click.option("--shard", metavar="K/N", help="Only the K-th of N equal shares of the work, into the folder OUT: 3/16.")
+@click.option(
+    "--dask",
+    metavar="ADDRESS",
+    help="Trace on the workers of this dask scheduler, such as tcp://HOST:8786; local starts some on this machine.",
+)
 @click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays, without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("-v", "--verbose", is_flag=True, help="Also show effects and compilation time.")
 @debug_option
 @click.pass_context
-def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard, overwrite, quiet, verbose, **asked):
+def simulate(
+    ctx, config, output, overrides, checkpoint, time_limit, only, shard, dask, overwrite, quiet, verbose, **asked
+):
     """Simulate a scene or study file and write the result.
 
     CONFIG is the file, or - for the standard input. A study writes one file per material into a folder.
@@ -56,11 +63,15 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard
     of a Slurm array auto/16 takes the number from SLURM_ARRAY_TASK_ID; the count may be left out where OUT holds
     the plan of `goniosim plan`.
 
+    With --dask the work is cut into shards too, which lie in OUT.shards until all are traced and merged into OUT. The
+    workers have to see that folder. Each shard takes one thread, or as many as --threads says.
+
     \b
     Examples: goniosim simulate quickstart.yaml
               goniosim simulate quickstart.yaml --rays 1e7 --set simulation.orders=3
               goniosim simulate quickstart.yaml --target 1% --max-time 10m
               goniosim simulate study.yaml --shard 3/16 -o shards
+              goniosim simulate study.yaml --dask tcp://10.0.0.1:8786 -o out
     """  # noqa: D301
     if output == "-":
         raise click.UsageError("a result is a file, not a stream: name it with -o")
@@ -71,16 +82,19 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard
     from goniosim.report.simulation.summary import summary
     from goniosim.scene import load_config, total_rays
 
-    from . import jobs, shards
+    from . import jobs, shards, spreading
 
     described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     if shard is not None:
+        if dask is not None:
+            raise click.UsageError("--dask traces all shards: leave out --shard")
         if overwrite:
             raise click.UsageError("--overwrite does not go with --shard: remove what is to be made anew")
         times = seconds_of(time_limit), seconds_of(checkpoint)
         ctx.exit(shards.trace(described, shard, output, *times, quiet, verbose))
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
+    place = planned[0].path.parent if many else planned[0].path
     notes = []
     todo, missed = jobs.sort_out(planned, overwrite, notes.append)
     for job in todo:
@@ -90,7 +104,12 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard
     with StopSignals(seconds_of(time_limit)) as signals, contextlib.closing(progress):
         for note in notes:
             progress.note(note)
-        for job, result in jobs.run(todo, progress, signals, verbose, overwrite, seconds_of(checkpoint)):
+        given = progress, signals, overwrite, seconds_of(checkpoint)
+        if dask is None:
+            found = jobs.run(todo, *given, verbose)
+        else:
+            found = spreading.run(dask, described, planned, todo, place, *given)
+        for job, result in found:
             done.append(study.row(result, job.path) if many else summary(result, job.path))
             if result.target_reached is False and result.status == "complete":
                 missed.append(f"{job.path}: {target.shortfall(job.scene.simulation)}")

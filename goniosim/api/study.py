@@ -3,6 +3,7 @@
 import contextlib
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar, overload
@@ -14,6 +15,7 @@ from ..store import keeper, look_at, reserve_output, state_left, write_result
 from ..writing import StrPath, make_folder
 from .progress import Progress, progress_of
 from .simulation import check_stop, trace
+from .spreading import check_executor, spread_files, spread_results
 from .stopping import Stop
 
 Study = Iterable[Scene] | Source
@@ -36,6 +38,8 @@ def simulate_study(
     max_time: float | str | None = None,
     progress: Progress = None,
     stop: threading.Event | None = None,
+    executor: Executor | None = None,
+    shards: int | None = None,
 ) -> dict[str, Result]: ...
 
 
@@ -55,6 +59,8 @@ def simulate_study(
     max_time: float | str | None = None,
     progress: Progress = None,
     stop: threading.Event | None = None,
+    executor: Executor | None = None,
+    shards: int | None = None,
 ) -> dict[str, Path]: ...
 
 
@@ -73,6 +79,8 @@ def simulate_study(
     max_time: float | str | None = None,
     progress: Progress = None,
     stop: threading.Event | None = None,
+    executor: Executor | None = None,
+    shards: int | None = None,
 ) -> dict[str, Result] | dict[str, Path]:
     """Simulate all materials of a study.
 
@@ -92,6 +100,14 @@ def simulate_study(
         Leave no file alone: simulate all anew, and replace whatever results stand there.
     rays, seed, threads, estimator, target, of, max_rays, max_time, progress, stop
         As for `simulate`, and for all materials; progress is that of the whole study.
+    executor : concurrent.futures.Executor, optional
+        Who traces: a ProcessPoolExecutor (of processes that are spawned, not forked), a ThreadPoolExecutor, or
+        ``client.get_executor(pure=False)`` of dask. The study is cut into shards, each of one thread or as many as
+        ``threads`` says; the results are the same to the last bit. With ``folder`` the shards lie in
+        ``FOLDER.shards``, which all workers have to see, until all are through; otherwise in the temporary directory.
+        Calling again goes on with what is missing.
+    shards : int, optional
+        How many, for an executor: four for each core of this machine, or as many as an interrupted call made.
 
     Returns
     -------
@@ -117,6 +133,8 @@ def simulate_study(
     ['coat-0.1', 'coat-0.2', 'coat-0.3']
     >>> goniosim.simulate_study("study.yaml", rays=1e4, folder="coats")["coat-0.2"].name
     'coat-0.2.h5'
+    >>> with ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn")) as pool:
+    ...     results = goniosim.simulate_study("study.yaml", rays=1e4, executor=pool)
     """
     given = {
         "rays": rays,
@@ -130,6 +148,9 @@ def simulate_study(
     }
     scenes = [with_arguments(scene, given) for scene in as_scenes(study)]
     check_stop(stop)
+    check_executor(executor, shards)
+    if folder is None and executor is not None:
+        return spread_results(scenes, executor, shards, progress, stop)
     if folder is None:
         results: dict[str, Result] = {}
         _run(scenes, trace, results, progress, stop)
@@ -141,6 +162,9 @@ def simulate_study(
     for scene in todo:
         # Room is kept only for the material at work.
         reserve_output(paths[scene.material.name], 0).release()
+    if executor is not None:
+        spread_files(scenes, files, folder, overwrite, executor, shards, progress, stop)
+        return {name: files[name] for name in paths if name in files}
     _run(todo, partial(_into_file, paths, overwrite), files, progress, stop)
     return {name: files[name] for name in paths if name in files}
 

@@ -4,6 +4,7 @@ from goniosim.cluster.division import Division, Task
 from goniosim.cluster.merging import merge
 from goniosim.cluster.plan_file import ShardPlan, plan_of
 from goniosim.cluster.shard import array_list, parse_shard
+from goniosim.cluster.spreading import remove_shards, shards_folder, spread
 from goniosim.cluster.standing import Standing, State, standing_of
 from goniosim.cluster.tracing import error_path, run_shard
 
@@ -18,6 +19,9 @@ __all__ = [
     "merge",
     "parse_shard",
     "plan_of",
+    "remove_shards",
     "run_shard",
+    "shards_folder",
+    "spread",
     "standing_of",
 ]

@@ -39,6 +39,11 @@ class ShardPlan:
     weights: tuple[float, ...]
     goniosim_version: str
 
+    @property
+    def has_targets(self) -> bool:
+        """Whether nobody knows all of its light paths ahead."""
+        return any(scene.simulation.target is not None for scene in self.scenes)
+
     @classmethod
     def make(
         cls, scenes: Iterable[Scene], study: str | None, shards: int, weights: Sequence[float] | None = None

@@ -72,7 +72,8 @@ def run_shard(
     found: list[tuple[Task, Standing]] = []
     try:
         for task in Division(plan).tasks(shard):
-            before = standing_of(task, folder)
+            # Every byte: what is damaged is made anew, as `merge` asks for.
+            before = standing_of(task, folder, whole=True)
             if before.state is State.DAMAGED:
                 note(f"to be replaced: {before.why}")
             if before.state is not State.DONE:
