@@ -24,7 +24,6 @@ def run(address, described, planned, todo, output, progress, signals, overwrite,
         Seconds between two checkpoints of a shard.
     """
     from goniosim.cluster import merge, plan_of, remove_shards, shards_folder, spread
-
     from goniosim.scene import total_rays
 
     dask_executor = _dask_executor()

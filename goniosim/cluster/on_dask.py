@@ -6,6 +6,7 @@ import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor
 
+import dask
 from distributed import Client, LocalCluster, Worker, WorkerPlugin
 from distributed.scheduler import KilledWorker
 
@@ -51,7 +52,10 @@ def dask_executor(address: str, threads: int = 1) -> Iterator[tuple[Executor, in
     """
     with contextlib.ExitStack() as stack:
         if address == LOCAL:
+            # What happens to them, the command tells.
             logging.getLogger("distributed").setLevel(logging.CRITICAL)
+            # Otherwise it asks the libraries of this very process for a single thread, and of what follows too.
+            stack.enter_context(dask.config.set({"distributed.nanny.pre-spawn-environ": {}}))
             count = max(1, available_cores() // threads)
             # The engine looks after memory itself.
             given = {"memory_limit": 0, "dashboard_address": None, "silence_logs": logging.CRITICAL}
