@@ -6,7 +6,7 @@ from pathlib import Path
 from goniosim.cluster.division import Division, Task
 from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.shard import array_list
-from goniosim.cluster.standing import State, standing_of
+from goniosim.cluster.standing import Standing, State, standing_of
 from goniosim.engine import join_portions
 from goniosim.errors import ConfigError, OutputError, UnusableResultError
 from goniosim.result import Result
@@ -14,7 +14,7 @@ from goniosim.scene import with_arguments
 from goniosim.store import open_result, read_portion, write_result
 from goniosim.writing import StrPath, make_folder
 
-_WORDS = {State.MISSING: "missing", State.PARTIAL: "not finished", State.DAMAGED: "damaged"}
+_WORDS = {State.MISSING: "missing", State.PARTIAL: "not finished"}
 
 
 def merge(
@@ -72,16 +72,17 @@ def merge(
     lacking = _lacking(tasks, folder)
     if lacking and not allow_missing:
         raise _incomplete(folder, lacking)
-    for line in lacking.values():
-        note(f"left out: {line}" if not line.endswith("not finished") else f"used as far as it goes: {line}")
+    for task, there in lacking.items():
+        what = "used as far as it goes" if there.state is State.PARTIAL else "left out"
+        note(f"{what}: {_line(task, there, folder)}")
     if plan.study is not None:
         make_folder(out)
     words = f"{len({task.shard for task in tasks})} shards"
-    if numbers := {task.shard for task in lacking}:
-        words += f", of which {array_list(list(numbers))} are missing or not finished"
+    if lacking:
+        words += f", of which {array_list([task.shard for task in lacking])} are missing or not finished"
     for scene in plan.scenes:
         mine = [task for task in tasks if task.scene is scene]
-        usable = [task for task in mine if "damaged" not in lacking.get(task, "") and task.path(folder).exists()]
+        usable = [task for task in mine if task not in lacking or lacking[task].state is State.PARTIAL]
         if not mine:
             continue
         if not usable:
@@ -89,6 +90,10 @@ def merge(
             continue
         path = Path(out) / f"{scene.material.name}.h5" if plan.study is not None else Path(out)
         result = _joined(usable, folder, threads)
+        if result.status != "complete" and lacking.keys().isdisjoint(mine):
+            raise UnusableResultError(
+                f"{folder}: {scene.material.name}: its shards hold less than they say; run all again"
+            )
         result.provenance["merged"] = words
         write_result(result, path, overwrite=overwrite)
         yield result, path
@@ -111,19 +116,19 @@ def _joined(tasks: list[Task], folder: StrPath, threads: int | None) -> Result:
     return result
 
 
-def _lacking(tasks: list[Task], folder: StrPath) -> dict[Task, str]:
-    """Tasks that are not done, with a line on each."""
-    found = {}
-    for task in tasks:
-        there = standing_of(task, folder, whole=True)
-        if there.state is not State.DONE:
-            found[task] = there.why or f"{task.path(folder)}: {_WORDS[there.state]}"
-    return found
+def _lacking(tasks: list[Task], folder: StrPath) -> dict[Task, Standing]:
+    """Tasks that are not done, with what there is of them."""
+    found = ((task, standing_of(task, folder, whole=True)) for task in tasks)
+    return {task: there for task, there in found if there.state is not State.DONE}
 
 
-def _incomplete(folder: StrPath, lacking: dict[Task, str]) -> UnusableResultError:
+def _line(task: Task, there: Standing, folder: StrPath) -> str:
+    return there.why or f"{task.path(folder)}: {_WORDS[there.state]}"
+
+
+def _incomplete(folder: StrPath, lacking: dict[Task, Standing]) -> UnusableResultError:
     shards = array_list([task.shard for task in lacking])
-    lines = list(lacking.values())
+    lines = [_line(task, there, folder) for task, there in lacking.items()]
     shown = [*lines[:20], *([f"and {len(lines) - 20} more"] if len(lines) > 20 else [])]
     count = f"{len(lines)} of its files are" if len(lines) > 1 else "one of its files is"
     return UnusableResultError(

@@ -1,5 +1,6 @@
 """The file `plan.json` of a folder of shards: what is simulated, and into how many shards it is cut."""
 
+import itertools
 import json
 import math
 from collections.abc import Iterable, Sequence
@@ -10,7 +11,7 @@ from typing import Any, Self
 from goniosim.errors import ConfigError, ForeignFileError, NewerSchemaError, OutputError, UnusableResultError
 from goniosim.provenance import version_of
 from goniosim.scene import Scene, differences, parse_scene
-from goniosim.writing import StrPath, make_folder, write_text
+from goniosim.writing import StrPath, make_folder, printable, write_text
 
 NAME = "plan.json"
 FILETYPE, SCHEMA_VERSION = "goniosim-shards", 1
@@ -38,6 +39,12 @@ class ShardPlan:
     scenes: tuple[Scene, ...]
     weights: tuple[float, ...]
     goniosim_version: str
+
+    def __post_init__(self) -> None:
+        ends = [0.0, *itertools.accumulate(self.weights)]
+        # What is lost beside the others would have no place of its own.
+        if not all(before < end < math.inf for before, end in itertools.pairwise(ends)):
+            raise ConfigError("weights must be above 0, and none lost in the rounding of their sum")
 
     @property
     def has_targets(self) -> bool:
@@ -114,24 +121,32 @@ class ShardPlan:
         if not isinstance(content, dict) or content.get("filetype") != FILETYPE:
             raise ForeignFileError(f"{path}: is not a plan of shards; write it anew with `goniosim plan`")
         version = content.get("schema_version")
-        if isinstance(version, int) and version > SCHEMA_VERSION:
+        if isinstance(version, int | float) and version > SCHEMA_VERSION:
             raise NewerSchemaError(f"{path}: is of a newer goniosim; update goniosim")
         try:
             return cls._parsed(content)
-        except (ConfigError, ValueError, TypeError, KeyError) as error:
-            raise ForeignFileError(f"{path}: is not a plan of shards: {error}; write it anew") from error
+        except (ConfigError, ValueError, TypeError, LookupError, ArithmeticError) as error:
+            why = printable(" ".join(str(error).split()), 200)
+            raise ForeignFileError(f"{path}: is not a plan of shards: {why}; write it anew") from error
 
     @classmethod
     def _parsed(cls, content: dict[str, Any]) -> Self:
-        scenes = tuple(parse_scene(text) for text in content["scenes"])
+        names = ("study", "shards", "scenes", "weights", "goniosim_version", "schema_version")
+        if missing := [name for name in names if name not in content]:
+            raise ValueError(f"it lacks {missing[0]}")
+        study, shards, texts = content["study"], content["shards"], content["scenes"]
+        if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
+            raise ValueError("scenes must be a list of texts")
+        if not isinstance(content["weights"], list) or not isinstance(study, str | None):
+            raise ValueError("its entries are of other kinds")
+        if not isinstance(shards, int) or not 1 <= shards <= MOST_SHARDS:
+            raise ValueError(f"shards must be a whole number from 1 to {MOST_SHARDS}")
         weights = tuple(float(weight) for weight in content["weights"])
-        study, shards = content["study"], content["shards"]
-        names = {scene.material.name.casefold() for scene in scenes}
-        sound = len(weights) == len(scenes) == len(names) > 0 and all(0 < w < math.inf for w in weights)
-        if not sound or not isinstance(shards, int) or not isinstance(study, str | None):
-            raise ValueError("its entries contradict each other")
-        if not 1 <= shards <= MOST_SHARDS:
-            raise ValueError(f"shards must be from 1 to {MOST_SHARDS}")
+        if not len(weights) == len(texts) > 0:
+            raise ValueError(f"{len(weights)} weights for {len(texts)} scenes")
+        scenes = tuple(_without_threads(parse_scene(text)) for text in texts)
+        if len({scene.material.name.casefold() for scene in scenes}) < len(scenes):
+            raise ValueError("two of its scenes have the same name")
         return cls(shards, study, scenes, weights, str(content["goniosim_version"]))
 
     def require_version(self, folder: StrPath) -> None:

@@ -157,7 +157,7 @@ class AnalogRun:
         self._units[direction] = int(state["units"])
         parts = state["ledgers"]
         self.ledgers[direction] = list(array(parts, self._shape_of_ledgers)) if len(parts) else []
-        self.part_rays[direction] = [int(size) for size in state["part_rays"]]
+        self.part_rays[direction] = _sizes(state["part_rays"], len(self.ledgers[direction]))
         self.spending.restore(direction, state["spending"])
 
     @property
@@ -177,11 +177,17 @@ class AnalogRun:
         direction = works[0].direction
         self.finish_round(direction)
         self._add(direction, array(state["histogram"], self.tallies[direction].histogram.shape), True)
-        ledgers, sizes = array(state["ledgers"], self._shape_of_ledgers), state["part_rays"]
-        if not len(ledgers) == len(sizes) <= PARTS * len(works):
-            raise ValueError("not the state of this run: numbers of parts that contradict each other")
+        ledgers = array(state["ledgers"], self._shape_of_ledgers)
+        sizes = _sizes(state["part_rays"], PARTS * len(works))
+        if len(ledgers) != len(sizes) or sum(sizes) != sum(work.rays for work in works):
+            raise _contradiction()
         for first in range(0, len(ledgers), PARTS):
             self._book(direction, ledgers[first : first + PARTS], sizes[first : first + PARTS])
+
+    def require(self, direction, works):
+        """Raise a ValueError if what was added up of a direction is not just these pieces of work."""
+        if self._units[direction] != len(works) or self.rays[direction] != sum(work.rays for work in works):
+            raise _contradiction()
 
     def finish_round(self, direction):
         """Close the section that is open."""
@@ -239,7 +245,19 @@ class SectionOfUnits:
         self._histogram[...] = array(state["histogram"], self._histogram.shape)
         ledgers = state["ledgers"]
         self._ledgers = list(array(ledgers, self._shape_of_ledgers)) if len(ledgers) else []
-        self._part_rays = [int(size) for size in state["part_rays"]]
+        self._part_rays = _sizes(state["part_rays"], len(self._ledgers))
+
+
+def _sizes(values, count):
+    """Rays of so many parts."""
+    found = [int(size) for size in values]
+    if len(found) != count or min(found, default=0) < 0:
+        raise _contradiction()
+    return found
+
+
+def _contradiction():
+    return ValueError("not the state of this run: numbers of parts or rays that contradict each other")
 
 
 def _added_in_pairs(values):

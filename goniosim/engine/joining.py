@@ -34,7 +34,7 @@ class Joint:
 
         Raises
         ------
-        ValueError, TypeError, LookupError, AttributeError
+        ValueError, TypeError, LookupError, AttributeError, ArithmeticError
             If it is none, or holds what is there already.
         """
         for record in state["records"]:
@@ -51,6 +51,7 @@ class Joint:
     def _begin(self, key, record):
         run, direction = self._runs[key[0]], key[1]
         run.restore(direction, record["sums"])
+        run.require(direction, _first([work for piece in self._pieces[key] for work in piece.works], record))
         self._seconds[key] = float(record["seconds"])
         works = int(record["works"])
         for piece in self._pieces[key]:
@@ -61,7 +62,7 @@ class Joint:
 
     def _join(self, key, piece, record):
         run, direction = self._runs[key[0]], key[1]
-        run.join(piece.works[: int(record["works"])], record["sums"])
+        run.join(_first(piece.works, record), record["sums"])
         run.spending.book(direction, int(record["events"]), float(record["cpu_seconds"]))
         self._seconds[key] += float(record["seconds"])
         self._next[key] = piece.number + 1
@@ -92,6 +93,14 @@ class Joint:
             elapsed = [sum(each[min(i, len(each) - 1)][2] for each in rows if each) for i in range(most)]
             for each in rows:
                 each[:] = [(row[0], row[1], elapsed[i], row[3]) for i, row in enumerate(each)]
+
+
+def _first(works, record):
+    """Those that a record says were done."""
+    count = int(record["works"])
+    if not 0 < count <= len(works):
+        raise ValueError(f"{count} pieces of work where there are {len(works)}")
+    return works[:count]
 
 
 def _is_last(piece):

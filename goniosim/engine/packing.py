@@ -67,7 +67,7 @@ def unpack(content):
 
 
 def array(value, shape, dtype=float):
-    """A copy of an array of a tree; a ValueError if it is none of that shape and type.
+    """A copy of an array of a tree; a ValueError if it is none of that shape and type, or not finite.
 
     Parameters
     ----------
@@ -79,6 +79,8 @@ def array(value, shape, dtype=float):
     fits = isinstance(value, np.ndarray) and value.dtype == dtype and value.ndim == len(shape)
     if not fits or any(length not in (-1, found) for length, found in zip(shape, value.shape, strict=True)):
         raise ValueError(f"not the state of this run: an array of shape {shape} is missing")
+    if not np.isfinite(value).all():
+        raise ValueError("not the state of this run: numbers that are not finite")
     return np.array(value, order="C")
 
 

@@ -27,8 +27,8 @@ class Portion:
     runs : list of AnalogRun or ReplicatedRun
     done : int
         Pieces of work that are added up.
-    rays, total_rays : int
-        Light paths of those, and of all.
+    total_rays : int
+        Light paths of all.
     """
 
     def __init__(self, plan, simulation, first, stop):
@@ -40,7 +40,7 @@ class Portion:
             (piece, work, (piece.run, piece.direction) in begun) for piece in self._pieces for work in piece.works
         ]
         self._apart, self._cost = {}, {}
-        self.done = self.rays = 0
+        self.done = self._through = 0
         self.total_rays = sum(piece.rays for piece in self._pieces)
         self._since = time.perf_counter()
 
@@ -48,6 +48,11 @@ class Portion:
     def finished(self):
         """Whether all pieces are added up."""
         return self.done == len(self._works)
+
+    @property
+    def rays(self):
+        """Light paths that are added up; never all before the last piece of work, which may have none of its own."""
+        return self._through if self.finished else min(self._through, self.total_rays - 1)
 
     def run(self, drive, keep=None):
         """Do what is left.
@@ -78,7 +83,7 @@ class Portion:
         now = time.perf_counter()
         seconds, self._since = now - self._since, now
         self.done += 1
-        self.rays += 0 if work.coarse else work.rays
+        self._through += 0 if work.coarse else work.rays
         key = (piece.run, piece.direction, 0 if begun else piece.number)
         record = self._apart.setdefault(key, {"works": 0, "events": 0, "cpu_seconds": 0.0, "seconds": 0.0})
         record["works"] += 1
@@ -110,25 +115,36 @@ class Portion:
 
         Raises
         ------
-        ValueError, TypeError, LookupError, AttributeError
+        ValueError, TypeError, LookupError, AttributeError, ArithmeticError
             If it is none of this portion.
         """
         if list(state["pieces"]) != list(self._range):
             raise ValueError("not the state of this run: it is of other pieces of work")
-        self.done = int(state["done"])
+        done = int(state["done"])
+        if not 0 < done <= len(self._works):
+            raise ValueError(f"not the state of this run: {done} pieces of work where there are {len(self._works)}")
+        through = {}
+        for piece, work, begun in self._works[:done]:
+            key = piece.run, piece.direction, 0 if begun else piece.number
+            through.setdefault(key, (begun, []))[1].append(work)
         for record in state["records"]:
             number, direction, piece = (int(record[name]) for name in ("run", "direction", "piece"))
-            held = {name: record[name] for name in ("works", "events", "cpu_seconds", "seconds")}
-            if self._is_begun(number, direction):
+            begun, works = through.pop((number, direction, piece))
+            held = {name: float(record[name]) for name in ("cpu_seconds", "seconds")}
+            held |= {name: int(record[name]) for name in ("works", "events")}
+            if held["works"] != len(works):
+                raise ValueError("not the state of this run: numbers of pieces that contradict each other")
+            if begun:
                 self.runs[number].restore(direction, record["sums"])
+                self.runs[number].require(direction, works)
             else:
                 held["sums"] = self.runs[number].apart()
                 held["sums"].restore(record["sums"])
             self._apart[number, direction, piece] = held
-        self.rays = sum(work.rays for _, work, _ in self._works[: self.done] if not work.coarse)
-
-    def _is_begun(self, number, direction):
-        return any(begun for piece, _, begun in self._works if (piece.run, piece.direction) == (number, direction))
+        if through:
+            raise ValueError("not the state of this run: pieces of work are missing")
+        self.done = done
+        self._through = sum(work.rays for _, work, _ in self._works[: self.done] if not work.coarse)
 
 
 class _Share:

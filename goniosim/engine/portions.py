@@ -18,7 +18,7 @@ from .session import Session
 from .simulate import checked_state, guarded
 
 # What reading a state of somebody else's making may raise.
-_MISFIT = (ValueError, TypeError, LookupError, AttributeError)
+_MISFIT = (ValueError, TypeError, LookupError, AttributeError, ArithmeticError)
 
 
 def trace_portion(scene, first, end, *, progress=None, stop=None, checkpoint=None, every=60.0, resume=None):

@@ -190,7 +190,12 @@ class ReplicatedRun:
 
     def join(self, works, state):
         """Take in a section, of some pieces of work, that was added up elsewhere."""
-        self._sums[works[0].direction].join(works[0].rays // len(works[0].replicates), state)
+        self._sums[works[0].direction].join(works[0].rays // len(works[0].replicates), _replicates(works), state)
+
+    def require(self, direction, works):
+        """Raise a ValueError if what was added up of a direction is not just these pieces of work."""
+        whole = [work for work in works if not work.coarse]
+        self._sums[direction].require(_replicates(whole), sum(work.rays for work in whole))
 
     def finish_round(self, direction):
         """Add a round up, or what there is of it."""
@@ -202,6 +207,10 @@ class ReplicatedRun:
         energy, stderr = sums.slices(view)
         bias = self.bias.get(direction) if order is None else None
         return Estimate(energy, stderr, sums.total_stderr(view), sums.count, batches=sums.batches(view), bias=bias)
+
+
+def _replicates(works):
+    return sum(len(work.replicates) for work in works)
 
 
 def _views(plan, sides):

@@ -80,13 +80,15 @@ class Replicates:
         if self._section.count == SECTION:
             self._close()
 
-    def join(self, size, state):
+    def join(self, size, count, state):
         """Take in a section of a round that was added up elsewhere.
 
         Parameters
         ----------
         size : int
             Light paths of a replicate.
+        count : int
+            Replicates of the section.
         state : tree
             As of `Section.state`.
         """
@@ -95,7 +97,15 @@ class Replicates:
             self._begin(size)
         section = self._empty()
         section.restore(state)
+        if section.count != count:
+            raise _contradiction()
         self._round.join(section)
+
+    def require(self, count, paths):
+        """Raise a ValueError if there are not just so many replicates and light paths."""
+        open_ = self._round.count + self._section.count
+        if (self.count + open_, self.paths + open_ * self._size) != (count, paths):
+            raise _contradiction()
 
     def _close(self):
         self._round.join(self._section)
@@ -160,6 +170,10 @@ class Replicates:
         """
         batches = self._batches[:, view]
         return batches + (block_sums(self.slices(view)[0]) - batches.mean(axis=0))
+
+
+def _contradiction():
+    return ValueError("not the state of this run: numbers of replicates or light paths that contradict each other")
 
 
 def _as_many(found):

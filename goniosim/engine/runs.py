@@ -86,7 +86,10 @@ class Spending:
         """Go on from such a tree."""
         self.events[direction] = int(state["events"])
         self.cpu_seconds[direction] = float(state["cpu_seconds"])
-        self.checkpoints[direction] = [tuple(row) for row in state["checkpoints"]]
+        self.checkpoints[direction] = [
+            (int(rays), float(cpu), float(seconds), {str(name): float(error) for name, error in errors.items()})
+            for rays, cpu, seconds, errors in state["checkpoints"]
+        ]
 
     def note(self, direction, rays, seconds, errors):
         """Note a checkpoint.

@@ -107,7 +107,7 @@ class Session:
         """
         try:
             self._run()
-        except (ValueError, TypeError, LookupError, AttributeError) as error:
+        except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError) as error:
             if self.resumed is None:
                 raise
             raise _misfit(error) from error

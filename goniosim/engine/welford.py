@@ -42,7 +42,8 @@ class Welford:
 
     def restore(self, state, shape):
         """Go on from such a tree, of arrays of some shape."""
-        self.count, mean, squares = state
+        count, mean, squares = state
+        self.count = int(count)
         if self.count:
             self.mean, self._squares = array(mean, shape), array(squares, shape)
 

@@ -66,7 +66,8 @@ class Portion:
 
     def check(self) -> None:
         """Raise a ValueError if it says what no portion can say."""
-        if not 1 <= self.shard <= self.shards or not 0 <= self.first < self.end or self.done_rays > self.total_rays:
+        sound = 1 <= self.shard <= self.shards and 0 <= self.first < self.end and 0 < self.done_rays <= self.total_rays
+        if not sound:
             raise ValueError("numbers that contradict each other")
 
 
