@@ -1,9 +1,11 @@
 """Files as a stranger might make them: edited at will, with digests that agree with what they hold."""
 
+import copy
 import hashlib
 import json
 
 import h5py
+import numpy as np
 
 from goniosim.store import access, manifest, seal
 from goniosim.store.kinds import MODELS, RESULT
@@ -59,3 +61,22 @@ def _manifest(file):
             if isinstance(link, h5py.HardLink) and f"{path}/{name}" != "/checksums":
                 todo.append((f"{path}/{name}".lstrip("/"), node[name]))
     return json.dumps(entries).encode()
+
+
+def arrays(tree, path=()):
+    """Ways to the arrays of a tree, with them."""
+    if isinstance(tree, np.ndarray):
+        yield path, tree
+    elif isinstance(tree, dict | list):
+        for key, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
+            yield from arrays(value, (*path, key))
+
+
+def changed(tree, path, value):
+    """A copy of a tree with something else at the end of a way."""
+    made = copy.deepcopy(tree)
+    node = made
+    for key in path[:-1]:
+        node = node[key]
+    node[path[-1]] = value
+    return made

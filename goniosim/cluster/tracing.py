@@ -137,7 +137,11 @@ def _trace_portion(task: Task, scene: Scene, folder: StrPath, note: Callable[[st
         except OutputError as error:
             note(f"no checkpoint: {error}")
 
-    found = trace_portion(scene, task.first, task.end, checkpoint=checkpoint, resume=resume, **given)
+    try:
+        found = trace_portion(scene, task.first, task.end, checkpoint=checkpoint, resume=resume, **given)
+    except UnusableResultError as error:
+        # No accident: its digests were right.
+        raise UnusableResultError(f"{path}: {error}; remove it, to begin anew") from error
     return keep(*found, rescued=True)
 
 

@@ -174,15 +174,19 @@ class AnalogRun:
 
     def join(self, works, state):
         """Take in a section, of some pieces of work, that was added up elsewhere."""
-        direction = works[0].direction
+        direction, section = works[0].direction, self.apart()
+        section.restore(state)
+        self.require_apart(section, works)
         self.finish_round(direction)
-        self._add(direction, array(state["histogram"], self.tallies[direction].histogram.shape), True)
-        ledgers = array(state["ledgers"], self._shape_of_ledgers)
-        sizes = _sizes(state["part_rays"], PARTS * len(works))
-        if len(ledgers) != len(sizes) or sum(sizes) != sum(work.rays for work in works):
+        self._add(direction, section.histogram, True)
+        for first in range(0, len(section.ledgers), PARTS):
+            self._book(direction, section.ledgers[first : first + PARTS], section.part_rays[first : first + PARTS])
+
+    def require_apart(self, section, works):
+        """Raise a ValueError if what was added up in a section of its own is not just these pieces of work."""
+        sizes = section.part_rays
+        if len(sizes) != PARTS * len(works) or sum(sizes) != sum(work.rays for work in works):
             raise _contradiction()
-        for first in range(0, len(ledgers), PARTS):
-            self._book(direction, ledgers[first : first + PARTS], sizes[first : first + PARTS])
 
     def require(self, direction, works):
         """Raise a ValueError if what was added up of a direction is not just these pieces of work."""
@@ -223,29 +227,36 @@ class SectionOfUnits:
     Parameters
     ----------
     plan : goniosim.engine.plan.Plan
+
+    Attributes
+    ----------
+    histogram : ndarray
+        As of a tally.
+    ledgers, part_rays : list
+        Of the parts of the work units.
     """
 
     def __init__(self, plan):
-        self._histogram, self._ledgers, self._part_rays = Tally(plan).histogram, [], []
+        self.histogram, self.ledgers, self.part_rays = Tally(plan).histogram, [], []
         self._shape_of_ledgers = -1, N_LEDGER, plan.n_distinct
 
     def add(self, tally, part_rays):
         """Take in a work unit, and clear its tally."""
-        self._histogram += tally.histogram
-        self._ledgers.extend(tally.ledgers.copy())
-        self._part_rays.extend(part_rays)
+        self.histogram += tally.histogram
+        self.ledgers.extend(tally.ledgers.copy())
+        self.part_rays.extend(part_rays)
         tally.clear()
 
     def state(self):
         """As a tree for `packing.pack`."""
-        return {"histogram": self._histogram, "ledgers": np.array(self._ledgers), "part_rays": self._part_rays}
+        return {"histogram": self.histogram, "ledgers": np.array(self.ledgers), "part_rays": self.part_rays}
 
     def restore(self, state):
         """Go on from such a tree."""
-        self._histogram[...] = array(state["histogram"], self._histogram.shape)
+        self.histogram[...] = array(state["histogram"], self.histogram.shape)
         ledgers = state["ledgers"]
-        self._ledgers = list(array(ledgers, self._shape_of_ledgers)) if len(ledgers) else []
-        self._part_rays = _sizes(state["part_rays"], len(self._ledgers))
+        self.ledgers = list(array(ledgers, self._shape_of_ledgers)) if len(ledgers) else []
+        self.part_rays = _sizes(state["part_rays"], len(self.ledgers))
 
 
 def _sizes(values, count):

@@ -1,6 +1,7 @@
 """Portions of one simulation, joined: to the same bits as if all had been one run."""
 
 from . import assembly
+from .packing import amount
 from .pieces import pieces_of
 
 
@@ -52,7 +53,7 @@ class Joint:
         run, direction = self._runs[key[0]], key[1]
         run.restore(direction, record["sums"])
         run.require(direction, _first([work for piece in self._pieces[key] for work in piece.works], record))
-        self._seconds[key] = float(record["seconds"])
+        self._seconds[key] = amount(record["seconds"])
         works = int(record["works"])
         for piece in self._pieces[key]:
             if works <= 0:
@@ -63,8 +64,8 @@ class Joint:
     def _join(self, key, piece, record):
         run, direction = self._runs[key[0]], key[1]
         run.join(_first(piece.works, record), record["sums"])
-        run.spending.book(direction, int(record["events"]), float(record["cpu_seconds"]))
-        self._seconds[key] += float(record["seconds"])
+        run.spending.book(direction, int(amount(record["events"])), amount(record["cpu_seconds"]))
+        self._seconds[key] += amount(record["seconds"])
         self._next[key] = piece.number + 1
         if _is_last(piece):
             self._note(key)

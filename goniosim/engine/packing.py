@@ -5,6 +5,7 @@ Data only: nothing in the bytes is executed, and what they say of themselves is 
 
 import io
 import json
+import math
 import zipfile
 
 import numpy as np
@@ -82,6 +83,14 @@ def array(value, shape, dtype=float):
     if not np.isfinite(value).all():
         raise ValueError("not the state of this run: numbers that are not finite")
     return np.array(value, order="C")
+
+
+def amount(value):
+    """A number of a tree that is not negative; a ValueError or TypeError if it is none."""
+    found = float(value)
+    if not 0.0 <= found < math.inf:
+        raise ValueError(f"not the state of this run: {found} of something")
+    return found
 
 
 def _without_arrays(tree, arrays):

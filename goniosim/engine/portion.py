@@ -7,6 +7,7 @@ by section.
 import time
 
 from . import assembly
+from .packing import amount
 from .pieces import pieces_of, start
 from .session import VERSION
 
@@ -130,8 +131,8 @@ class Portion:
         for record in state["records"]:
             number, direction, piece = (int(record[name]) for name in ("run", "direction", "piece"))
             begun, works = through.pop((number, direction, piece))
-            held = {name: float(record[name]) for name in ("cpu_seconds", "seconds")}
-            held |= {name: int(record[name]) for name in ("works", "events")}
+            held = {name: amount(record[name]) for name in ("cpu_seconds", "seconds")}
+            held |= {name: int(amount(record[name])) for name in ("works", "events")}
             if held["works"] != len(works):
                 raise ValueError("not the state of this run: numbers of pieces that contradict each other")
             if begun:
@@ -140,6 +141,7 @@ class Portion:
             else:
                 held["sums"] = self.runs[number].apart()
                 held["sums"].restore(record["sums"])
+                self.runs[number].require_apart(held["sums"], works)
             self._apart[number, direction, piece] = held
         if through:
             raise ValueError("not the state of this run: pieces of work are missing")

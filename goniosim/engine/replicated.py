@@ -9,7 +9,7 @@ import numpy as np
 from ..slices import PARAMETRIZATIONS
 from .estimate import Estimate, noise
 from .packing import array
-from .replicates import Replicates, unfold
+from .replicates import Replicates, contradiction, unfold
 from .rounds import REPLICATES as N_REPLICATES
 from .rounds import chunks, sizes
 from .runs import Spending, Work
@@ -190,12 +190,20 @@ class ReplicatedRun:
 
     def join(self, works, state):
         """Take in a section, of some pieces of work, that was added up elsewhere."""
-        self._sums[works[0].direction].join(works[0].rays // len(works[0].replicates), _replicates(works), state)
+        section = self.apart()
+        section.restore(state)
+        self.require_apart(section, works)
+        self._sums[works[0].direction].join(works[0].rays // len(works[0].replicates), section)
+
+    def require_apart(self, section, works):
+        """Raise a ValueError if what was added up in a section of its own is not just these pieces of work."""
+        if section.count != sum(len(work.replicates) for work in works):
+            raise contradiction()
 
     def require(self, direction, works):
         """Raise a ValueError if what was added up of a direction is not just these pieces of work."""
         whole = [work for work in works if not work.coarse]
-        self._sums[direction].require(_replicates(whole), sum(work.rays for work in whole))
+        self._sums[direction].require(sum(len(work.replicates) for work in whole), sum(work.rays for work in whole))
 
     def finish_round(self, direction):
         """Add a round up, or what there is of it."""
@@ -207,10 +215,6 @@ class ReplicatedRun:
         energy, stderr = sums.slices(view)
         bias = self.bias.get(direction) if order is None else None
         return Estimate(energy, stderr, sums.total_stderr(view), sums.count, batches=sums.batches(view), bias=bias)
-
-
-def _replicates(works):
-    return sum(len(work.replicates) for work in works)
 
 
 def _views(plan, sides):

@@ -80,32 +80,26 @@ class Replicates:
         if self._section.count == SECTION:
             self._close()
 
-    def join(self, size, count, state):
+    def join(self, size, section):
         """Take in a section of a round that was added up elsewhere.
 
         Parameters
         ----------
         size : int
             Light paths of a replicate.
-        count : int
-            Replicates of the section.
-        state : tree
-            As of `Section.state`.
+        section : Section
+            Not to be used any more.
         """
         self._close()
         if self._round.count == 0:
             self._begin(size)
-        section = self._empty()
-        section.restore(state)
-        if section.count != count:
-            raise _contradiction()
         self._round.join(section)
 
     def require(self, count, paths):
         """Raise a ValueError if there are not just so many replicates and light paths."""
         open_ = self._round.count + self._section.count
         if (self.count + open_, self.paths + open_ * self._size) != (count, paths):
-            raise _contradiction()
+            raise contradiction()
 
     def _close(self):
         self._round.join(self._section)
@@ -168,11 +162,14 @@ class Replicates:
         -------
         ndarray, shape (REPLICATES, channels, row blocks, column blocks)
         """
+        if not self.count:
+            return np.zeros((REPLICATES, *self._round.shape_of_blocks[1:]))
         batches = self._batches[:, view]
         return batches + (block_sums(self.slices(view)[0]) - batches.mean(axis=0))
 
 
-def _contradiction():
+def contradiction():
+    """What is wrong with a state whose numbers cannot all be true."""
     return ValueError("not the state of this run: numbers of replicates or light paths that contradict each other")
 
 

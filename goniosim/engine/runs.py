@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .packing import amount
+
 
 @dataclass(frozen=True)
 class Work:
@@ -84,10 +86,10 @@ class Spending:
 
     def restore(self, direction, state):
         """Go on from such a tree."""
-        self.events[direction] = int(state["events"])
-        self.cpu_seconds[direction] = float(state["cpu_seconds"])
+        self.events[direction] = int(amount(state["events"]))
+        self.cpu_seconds[direction] = amount(state["cpu_seconds"])
         self.checkpoints[direction] = [
-            (int(rays), float(cpu), float(seconds), {str(name): float(error) for name, error in errors.items()})
+            (int(amount(rays)), amount(cpu), amount(seconds), {name: amount(error) for name, error in errors.items()})
             for rays, cpu, seconds, errors in state["checkpoints"]
         ]
 

@@ -1,11 +1,11 @@
 """What an interrupted run left, changed by a stranger: a refusal in one line, and kernels never see it."""
 
-import copy
 import threading
 
 import numpy as np
 import pytest
 
+from crafting import arrays, changed
 from goniosim.engine import checked_state
 from goniosim.engine.drive import Drive
 from goniosim.engine.packing import pack, unpack
@@ -33,24 +33,6 @@ def left(request):
     found = []
     run(SCENES[request.param], lambda session: found.append(pack(session.state())))
     return SCENES[request.param], unpack(found[2])
-
-
-def arrays(tree, path=()):
-    """Ways to the arrays of a tree, with them."""
-    if isinstance(tree, np.ndarray):
-        yield path, tree
-    elif isinstance(tree, dict | list):
-        for key, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
-            yield from arrays(value, (*path, key))
-
-
-def changed(tree, path, value):
-    made = copy.deepcopy(tree)
-    node = made
-    for key in path[:-1]:
-        node = node[key]
-    node[path[-1]] = value
-    return made
 
 
 def test_arrays_of_other_shapes_and_types_are_refused(left):

@@ -11,15 +11,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from goniosim.cluster import ShardPlan
+from goniosim.cluster.plan_file import MOST_SHARDS
 from goniosim.result import AUDIT_ENTRIES
-from goniosim.store import layout, seal, write_result
-from goniosim.store.kinds import RESULT
+from goniosim.scene import parse_scene
+from goniosim.store import Portion, layout, seal, write_portion, write_result
+from goniosim.store.kinds import PORTION, RESULT
 from goniosim.store.models import layout as models_layout
+from small import SCENE
 from synthetic import make_result, write_models
 
 DOCUMENT = (Path(__file__).parents[2] / "data_schema.md").read_text(encoding="utf-8")
-MODELS = DOCUMENT[DOCUMENT.index("## The file of integrated models") : DOCUMENT.index("## Integrity")]
-RESULTS = DOCUMENT.replace(MODELS, "")
+MODELS = DOCUMENT[DOCUMENT.index("## The file of integrated models") : DOCUMENT.index("## The files of shards")]
+SHARDS = DOCUMENT[DOCUMENT.index("## The files of shards") : DOCUMENT.index("## Integrity")]
+RESULTS = DOCUMENT.replace(MODELS, "").replace(SHARDS, "")
 EVERYTHING = {"orders": 3, "target": "{relative_error: 1%}", "target_reached": False}
 
 
@@ -261,3 +266,26 @@ def test_the_example_of_the_models_file_runs(tmp_path, monkeypatch, capsys):
     (example,) = re.findall(r"```python\n(.*?)```", MODELS, re.DOTALL)
     exec(compile(example, "data_schema.md", "exec"), {})
     assert capsys.readouterr().out.splitlines()[0] == "synthetic ww09 (2, 3, 6, 8)"
+
+
+def test_every_piece_of_a_portion_file_is_described_and_the_reverse(tmp_path):
+    texts = {"goniosim_version": "0", "created_utc": "now", "name": "coat", "config_yaml": "a: 1", "config_hash": "f"}
+    numbers = {"shard": 3, "shards": 16, "first": 4, "end": 9, "done_rays": 5, "total_rays": 7, "seconds": 2}
+    write_portion(Portion(**texts, **numbers), b"12345", tmp_path / "portion.h5")
+    described = {(name.strip("`"), kind) for _, name, kind, _ in rows(4, SHARDS)}
+    with h5py.File(tmp_path / "portion.h5") as file:
+        kinds = {name: "text" if isinstance(value, bytes) else value.dtype.name for name, value in file.attrs.items()}
+        assert set(kinds.items()) == described
+        datasets = {path for path, node in walk(file) if isinstance(node, h5py.Dataset)}
+        assert file["state"][()].tobytes() == b"12345"
+    assert {row[0].strip("`") for row in rows(5, SHARDS)} == datasets
+    assert f"### Portion files, schema {PORTION.schema_version}\n" in SHARDS and f"`{PORTION.filetype}`" in SHARDS
+    assert "goniosim portion" in SHARDS and PORTION.mark.startswith(b"goniosim portion")
+
+
+def test_every_entry_of_a_plan_is_described_and_the_reverse(tmp_path):
+    ShardPlan.make([parse_scene(SCENE)], None, 16).write(tmp_path)
+    content = json.loads((tmp_path / "plan.json").read_text())
+    assert [row[0].strip("`") for row in rows(3, SHARDS)] == list(content)
+    assert f"always `{content['filetype']}`" in SHARDS and f"now {content['schema_version']}" in SHARDS
+    assert f"1 to {MOST_SHARDS}" in SHARDS
