@@ -14,9 +14,11 @@ from small import STUDY
 pytest.importorskip("distributed", reason="an optional part")
 import psutil  # noqa: E402
 from distributed import Client, LocalCluster  # noqa: E402
+from distributed.scheduler import KilledWorker  # noqa: E402
 
 import goniosim as api  # noqa: E402
 from goniosim.cluster import on_dask  # noqa: E402
+from goniosim.errors import RefusalError  # noqa: E402
 
 # Some seconds of work, on any machine.
 RAYS = "6e7"
@@ -114,10 +116,32 @@ def test_a_scheduler_that_does_not_answer(goniosim, folder, monkeypatch, address
     assert not (folder / "small.shards").exists()
 
 
-@pytest.mark.slow
-def test_a_scheduler_without_workers(goniosim, folder):
+@pytest.fixture
+def empty():
+    """A scheduler without workers."""
     with LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as cluster:
-        code, _, err = goniosim("simulate", "scene.yaml", "--dask", cluster.scheduler_address)
+        yield cluster
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (KilledWorker("task", None, 3), "a shard lost its worker again and again: .* what is done stays"),
+        (
+            ModuleNotFoundError("No module named 'goniosim'"),
+            "'goniosim'; install goniosim there as here",
+        ),
+    ],
+)
+def test_workers_that_are_no_help(empty, error, words):
+    with pytest.raises(RefusalError, match=words) as caught, on_dask.dask_executor(empty.scheduler_address) as given:
+        assert given[1] == 0
+        raise error
+    assert "\n" not in str(caught.value)
+
+
+def test_a_scheduler_without_workers(goniosim, folder, empty):
+    code, _, err = goniosim("simulate", "scene.yaml", "--dask", empty.scheduler_address)
     assert code == 10 and "it has no workers; start some" in only_line(err)
 
 

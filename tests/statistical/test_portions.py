@@ -1,11 +1,15 @@
 """A simulation in portions, joined, is the simulation in one go: to the same bits, however it was cut."""
 
 import itertools
+import threading
 
 import pytest
 
 from content import content
 from goniosim.engine import join_portions, piece_rays, simulate, trace_portion
+from goniosim.engine.drive import Drive
+from goniosim.engine.plan import make_plan
+from goniosim.engine.portion import Portion
 from goniosim.scene import with_arguments
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
@@ -45,3 +49,13 @@ def test_joined_to_the_same_bits(wholes, case, n):
     scene = scene_of(case)
     found = join_portions(scene, portions(scene, n))
     assert found.status == "complete" and content(found) == content(wholes[case])
+
+
+@pytest.mark.parametrize("case", ["operator", "connection"])
+def test_all_light_paths_are_told_at_the_very_end_only(case):
+    """Whoever is told of all takes a portion for whole; the last work may be on the bias of nodes, without paths."""
+    scene, told = scene_of(case), []
+    portion = Portion(make_plan(scene), scene.simulation, 0, 1)
+    drive = Drive(1, threading.Event(), lambda done, total: None)
+    portion.run(drive, lambda portion: told.append((portion.rays == portion.total_rays, portion.finished)))
+    assert len(told) > 1 and told[-1] == (True, True) and not any(any(each) for each in told[:-1])
