@@ -130,7 +130,7 @@ def test_only_parts_of_this_output_are_looked_at(tmp_path, dead):
 
 def test_a_part_that_is_taken_for_dead_while_it_is_made_is_made_anew(tmp_path, monkeypatch):
     """Another run looks between the creation of the file and its lock."""
-    lock = parts._lock
+    lock = parts.try_lock
     seen = []
 
     def late(descriptor):
@@ -139,7 +139,7 @@ def test_a_part_that_is_taken_for_dead_while_it_is_made_is_made_anew(tmp_path, m
             remove_dead([tmp_path / "r.h5"])
         return lock(descriptor)
 
-    monkeypatch.setattr(parts, "_lock", late)
+    monkeypatch.setattr(parts, "try_lock", late)
     part = Part(tmp_path / "r.h5")
     assert len(seen) == 1 and list(tmp_path.iterdir()) == [part.path] != seen
 
