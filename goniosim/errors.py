@@ -104,6 +104,10 @@ class ForeignFileError(GoniosimError):
     exit_code = 5
 
 
+class UnreadableFileError(ForeignFileError):
+    """The file is there, but the operating system does not let it be read: nobody knows what is in it."""
+
+
 class DamagedFileError(GoniosimError):
     """The file is a goniosim result whose content is truncated or altered."""
 

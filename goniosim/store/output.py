@@ -11,7 +11,7 @@ from typing import Self
 from goniosim.errors import OutputError
 from goniosim.parts import Part, remove_dead, turn
 from goniosim.store.kinds import RESULT
-from goniosim.store.opening import kind_of
+from goniosim.store.opening import is_unreadable, kind_of
 from goniosim.writing import NO_ROOM, StrPath, explained, remedy
 
 Buffer = bytes | memoryview
@@ -190,6 +190,8 @@ def _refuse_to_destroy(target: Path, shown: StrPath) -> None:
     if target.is_dir():
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
     if target.exists() and kind_of(target)[0] is not RESULT:
+        if is_unreadable(target):
+            raise OutputError(f"{shown}: exists and cannot be read, so it is not overwritten; choose another name")
         raise OutputError(
             f"{shown}: exists and is not a goniosim result, so it is not overwritten; choose another name or remove it"
         )
