@@ -23,6 +23,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Self
 
+from . import parts
 from .owners import FLAGS, boot, numbering, runs, short, start_of, try_lock
 from .writing import printable
 
@@ -78,6 +79,7 @@ class Claim:
 
     def __init__(self, target: Path) -> None:
         self.owner: Owner | None = None
+        self._target = Path(os.path.realpath(target))
         self._path = _place_of(target)
         self._descriptor = -1
         taken = _take(self._path)
@@ -95,6 +97,12 @@ class Claim:
 
     def __exit__(self, *_: object) -> None:
         self.release()
+
+    def remove_parts(self) -> None:
+        """Remove parts of the output that others left behind, on whatever machine: nobody else works on it."""
+        with contextlib.suppress(OSError):
+            os.utime(self._descriptor)
+            parts.remove_dead([self._target], before=os.fstat(self._descriptor).st_mtime - SILENCE)
 
     def release(self) -> None:
         """Let others have it; harmless when repeated, also by a signal handler in the midst of it."""

@@ -5,6 +5,7 @@ system has no locks, the name tells which process of which machine it was.
 """
 
 import contextlib
+import math
 import os
 import re
 import secrets
@@ -97,10 +98,10 @@ class Part:
             self.descriptor = -1
 
 
-def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
+def remove_dead(targets: Iterable[Path], *, inside: bool = False, before: float | None = None) -> None:
     """Remove parts that runs on these outputs left behind when they were killed.
 
-    Those of a living run are kept, and those of another machine of which nobody here can tell.
+    Those of a living run are kept, and those of another machine of which nobody here can tell, unless they are old.
 
     Parameters
     ----------
@@ -108,6 +109,9 @@ def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
         Files or folders that such parts would have become.
     inside : bool
         Look in the targets, which are folders, instead of beside them.
+    before : float, optional
+        When those of other machines have to have changed last, to be old: for whoever has claimed these outputs, by
+        the clock of the machine that keeps them.
     """
     homes: dict[Path, set[str]] = {}
     for target in targets:
@@ -117,7 +121,10 @@ def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
             for entry in list(os.scandir(home)):
                 match = _PART.fullmatch(entry.name)
                 if match and match[1] in names:
-                    _remove_if_dead(Path(entry.path), entry.is_dir(follow_symlinks=False), *match.groups()[1:])
+                    # A name that may have been cut may be that of another output.
+                    old = before is not None and len(match[1]) < _LONGEST and _changed(entry) < before
+                    folder = entry.is_dir(follow_symlinks=False)
+                    _remove_if_dead(Path(entry.path), folder, *match.groups()[1:], old=old)
 
 
 @contextlib.contextmanager
@@ -146,10 +153,19 @@ def turn(folder: Path, patience: float = 2.0) -> Iterator[None]:
             os.close(descriptor)
 
 
-def _remove_if_dead(path: Path, folder: bool, on: str, since: str, pid: str) -> None:
+def _changed(entry: os.DirEntry[str]) -> float:
+    try:
+        return entry.stat(follow_symlinks=False).st_mtime
+    except FileNotFoundError:
+        return math.inf
+
+
+def _remove_if_dead(path: Path, folder: bool, on: str, since: str, pid: str, *, old: bool) -> None:
     here, since_boot = on == host(), since == boot()
     # A lock may not reach from one machine to another.
     if not (here or since_boot):
+        if old:
+            _remove(path, folder)
         return
     free = None
     descriptor = -1

@@ -72,6 +72,7 @@ class Sharing(Generic[Item]):
 
     def _is_to_do(self, item: Item, claim: Claim) -> bool:
         try:
+            claim.remove_parts()
             done = self._is_done(item, self.is_untouched(item))
         except BaseException:
             claim.release()
