@@ -22,7 +22,7 @@ class Disk:
         real, left = getattr(module, name), [after]
 
         def failing(first, *arguments, **options):
-            if self._is_here(first) and self._matters(name, arguments):
+            if self._is_here(first) and self._matters(name, first, arguments):
                 if not left[0]:
                     raise OSError(number, os.strerror(number))
                 left[0] -= 1
@@ -65,9 +65,11 @@ class Disk:
         return isinstance(with_links, str) and Path(os.path.abspath(with_links)).is_relative_to(self.folder)
 
     @staticmethod
-    def _matters(name, arguments):
-        # Reading goes on where nothing can be created any more.
-        return name != "open" or bool(arguments[0] & os.O_CREAT)
+    def _matters(name, first, arguments):
+        # Reading goes on where nothing can be created any more, and what is hidden can be removed.
+        if name == "open":
+            return bool(arguments[0] & os.O_CREAT)
+        return name != "stat" or not os.path.basename(first).startswith(".")
 
 
 # What goes wrong, as a function of a disk, and what is said of it.
@@ -81,6 +83,7 @@ FAULTS = {
             "replace": (errno.EIO, errno.EXDEV, errno.ESTALE),
             "open": (errno.EROFS, errno.EACCES, errno.ENOSPC, errno.ESTALE),
             "ftruncate": (errno.EIO,),
+            "stat": (errno.EIO, errno.ESTALE),
         }.items()
         for n in numbers
     },

@@ -181,7 +181,8 @@ def rescue(parts: Sequence[Buffer], path: StrPath) -> str:
             os.close(descriptor)
     except OSError as error:
         if name is not None:
-            os.unlink(name)
+            with contextlib.suppress(OSError):
+                os.unlink(name)
         return f"nor could the result be saved in {directory}: {error.strerror}"
     return f"the result was saved as {name} instead"
 
