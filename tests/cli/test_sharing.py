@@ -11,10 +11,13 @@ import goniosim as package
 from abandoned import ELSEWHERE, GONE, leave
 from goniosim import engine
 from goniosim.claims import SILENCE, Claim
+from goniosim.engine.packing import pack
+from goniosim.engine.session import VERSION
 from goniosim.engine.simulate import simulate
 from goniosim.scene import load_scenes
 from goniosim.store import open_result, write_result
 from impatient import IMPATIENT, wait_for
+from reusing import encode_once
 from small import STUDY
 
 NAMES = ["coat-0.1", "coat-0.2", "coat-0.3"]
@@ -22,28 +25,35 @@ ASKED = ("simulate", "study.yaml", "-o", "out")
 US = f"host {os.uname().nodename}, pid {os.getpid()}"
 
 
-def quickly(scene):
+def quickly(scene, **given):
     """A result of a scene, by the cheapest estimator."""
-    result = simulate(scene, estimator="analog")
+    result = simulate(scene, estimator="analog", **given)
     result.config_yaml = scene.to_yaml()
     return result
 
 
 @pytest.fixture
 def traced(monkeypatch):
-    """Names of the materials that are simulated; ``traced.then[name]`` is called before the end of one."""
+    """Names of the materials that are simulated.
+
+    ``traced.then[name]`` is called before the end of one, and ``traced.resumed`` are those that went on.
+    """
 
     class Traced(list):
-        then = {}
+        """With attributes."""
 
     names = Traced()
+    names.then, names.resumed = {}, []
 
     def quick(scene, progress, resume=None, **_):
         names.append(scene.material.name)
         progress(1, 10)
         names.then.get(scene.material.name, lambda: None)()
-        return quickly(scene) if resume is None else pytest.fail("went on")
+        if resume is not None:
+            names.resumed.append(scene.material.name)
+        return quickly(scene)
 
+    encode_once(monkeypatch)
     monkeypatch.setattr(engine, "simulate", quick)
     monkeypatch.setattr(engine, "warm_up", lambda scene: 0.0)
     return names
@@ -61,10 +71,13 @@ def visible(folder):
     return sorted(path.stem for path in folder.iterdir())
 
 
-def done_by_another(out, name):
-    """Put the result of a material into its place."""
+def done_by_another(out, name, rays=None):
+    """Put the result of a material into its place, or what is there of it when its owner dies."""
     (scene,) = (scene for scene in load_scenes("study.yaml") if scene.material.name == name)
-    write_result(quickly(scene), out / f"{name}.h5", overwrite=True)
+    result = quickly(scene, rays=rays)
+    if rays is not None:
+        result.status, result.state = "partial", pack({"version": VERSION})
+    write_result(result, out / f"{name}.h5", overwrite=True)
 
 
 def test_a_scene_that_another_process_works_on_is_refused(goniosim, folder, traced):
@@ -102,6 +115,21 @@ def test_what_others_finish_meanwhile_is_not_traced_again(goniosim, out, traced,
     assert err.splitlines()[-1].endswith("  1 material is finished by others meanwhile")
     assert visible(out) == NAMES
     assert open_result(out / "coat-0.3.h5").rays.tolist() == [10_000]
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+@pytest.mark.parametrize("how", ["command", "python"])
+def test_what_one_that_died_meanwhile_has_left_is_gone_on_from(goniosim, out, traced, overwrite, how):
+    """To overwrite is said of what stood there in the beginning."""
+    for name in NAMES[:2]:
+        done_by_another(out, name, rays=2000)
+    traced.then["coat-0.1"] = lambda: done_by_another(out, "coat-0.2", rays=5000)
+    if how == "python":
+        package.simulate_study(STUDY, folder="out", overwrite=overwrite)
+    else:
+        assert goniosim(*ASKED, *(["--overwrite"] if overwrite else []))[0] == 0
+    assert traced == NAMES and traced.resumed == (["coat-0.2"] if overwrite else NAMES[:2])
+    assert visible(out) == NAMES
 
 
 def test_what_another_scene_took_meanwhile_is_not_traced_for_nothing(goniosim, out, traced):

@@ -14,8 +14,9 @@ from failing import FAULTS, Disk
 from goniosim import engine
 from goniosim.engine.simulate import simulate
 from goniosim.scene import parse_scene
-from goniosim.store import open_result, saving, write_result
+from goniosim.store import open_result, write_result
 from goniosim.store.writer import encode
+from reusing import encode_once
 from small import SCENE
 
 OLD, HALF, ALL = 1000, 5000, 10_000
@@ -57,21 +58,10 @@ def disk(tmp_path, monkeypatch, earlier):
     return Disk(tmp_path / "out", monkeypatch)
 
 
-@pytest.fixture(scope="module")
-def kept():
-    """Results as bytes, by their identity."""
-    return {}
-
-
 @pytest.fixture
-def stages(monkeypatch, results, kept):
+def stages(monkeypatch, results):
     """Functions to be called as the simulation comes to its checkpoint, and to its end."""
     todo = {"checkpoint": lambda: None, "end": lambda: None}
-
-    def encoded(result):
-        if id(result) not in kept:
-            kept[id(result)] = encode(result)
-        return kept[id(result)]
 
     def staged(scene, progress, checkpoint, **_):
         progress(HALF, ALL)
@@ -81,8 +71,7 @@ def stages(monkeypatch, results, kept):
         progress(ALL, ALL)
         return results[ALL]
 
-    # What takes nearly all of the time.
-    monkeypatch.setattr(saving, "encode", encoded)
+    encode_once(monkeypatch)
     monkeypatch.setattr(engine, "simulate", staged)
     monkeypatch.setattr(engine, "warm_up", lambda scene: 0.0)
     return todo

@@ -299,12 +299,17 @@ def test_many_processes_and_many_dead(tmp_path, locks):
         )
         for _ in range(4)
     ]
-    for process in started:
-        assert process.stdout.readline() == "ready\n"
-    for process in started:
-        process.stdin.write("go\n")
-        process.stdin.flush()
-    held = [int(process.communicate(timeout=120)[0]) for process in started]
-    assert [process.returncode for process in started] == [0] * 4 and held == [100] * 4
+    try:
+        for process in started:
+            assert process.stdout.readline() == "ready\n"
+        for process in started:
+            process.stdin.write("go\n")
+            process.stdin.flush()
+        held = [int(process.communicate(timeout=60)[0]) for process in started]
+        assert [process.returncode for process in started] == [0] * 4 and held == [100] * 4
+    finally:
+        for process in started:
+            process.kill()
+            process.communicate()
     remove_dead([tmp_path / "out" / "r.h5"])
     assert list((tmp_path / "out").iterdir()) == []
