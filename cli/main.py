@@ -7,6 +7,7 @@ from .compare import compare
 from .cost import cost
 from .info import info
 from .init import init
+from .merge import merge
 from .models import models
 from .plot import plot
 from .policy import PolicyGroup, debug_option
@@ -63,5 +64,5 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (init, simulate, check, cost, info, plot, compare, models, schema, versions):
+for command in (init, simulate, merge, check, cost, info, plot, compare, models, schema, versions):
     main.add_command(command)

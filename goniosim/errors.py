@@ -12,8 +12,8 @@ code  meaning
 2     the command line itself is wrong (unknown option, ...)
 3     the scene file or an override is wrong
 4     the output cannot be written (permission, disk full, ...),
-      something stands there that is not to be overwritten, or
-      there is not enough memory
+      something stands there that is not to be overwritten, another
+      process is at work on it, or there is not enough memory
 5     the file is not a goniosim result
 6     the file is a goniosim result, but damaged
 7     the file was written by a newer, incompatible goniosim
@@ -131,9 +131,20 @@ class StoppedError(GoniosimError):
 
 
 class UnusableResultError(GoniosimError):
-    """The file is sound, but it lacks what the command needs."""
+    """The file is sound, but it lacks what the command needs.
+
+    Parameters
+    ----------
+    message : str
+    details : sequence of str
+        Lines that stand before the message, where there is more than one thing to say.
+    """
 
     exit_code = 8
+
+    def __init__(self, message: str, details: Iterable[str] = ()) -> None:
+        self.details = list(details)
+        super().__init__(message)
 
 
 class RefusalError(GoniosimError):

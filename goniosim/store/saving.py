@@ -5,7 +5,7 @@ from goniosim.result import Result
 from goniosim.store.keeping import check_replacement, refuse_newer
 from goniosim.store.output import Reservation, rescue, reserve_output
 from goniosim.store.writer import encode
-from goniosim.writing import StrPath, explained
+from goniosim.writing import StrPath
 
 
 def write_result(
@@ -48,12 +48,10 @@ def write_result(
         refuse_newer(path) if overwrite else check_replacement(path, result)
 
     try:
-        # Also what fails on the way to an answer on what stands there.
-        with explained(path):
-            if reservation is None:
-                reservation = reserve_output(path, sum(map(len, parts)))
-            with reservation:
-                reservation.commit(parts, check)
+        if reservation is None:
+            reservation = reserve_output(path, sum(map(len, parts)))
+        with reservation:
+            reservation.commit(parts, check)
     except FewerRaysError:
         raise
     except OutputError as error:
