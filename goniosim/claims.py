@@ -24,6 +24,8 @@ from pathlib import Path
 from typing import Any, Self
 
 from . import parts
+from .cores import granted_threads
+from .errors import RefusalError
 from .owners import FLAGS, boot, numbering, runs, short, start_of, try_lock
 from .writing import printable
 
@@ -88,9 +90,7 @@ class Claim:
             return
         self._descriptor = taken
         self._released = threading.Event()
-        # Where the system grants no further thread, other machines take it for dead after a while.
-        with contextlib.suppress(RuntimeError):
-            threading.Thread(target=_beat, args=(os.dup(taken), self._released), daemon=True).start()
+        _start_beating(taken, self._released)
 
     def __enter__(self) -> Self:
         return self
@@ -278,6 +278,17 @@ def _server_time(home: Path) -> float | None:
         os.utime(probe.fileno())
         return os.fstat(probe.fileno()).st_mtime
     return None
+
+
+def _start_beating(descriptor: int, released: threading.Event) -> None:
+    # The work comes first. Where there is no thread to spare, other machines take its owner for dead after a while.
+    with contextlib.suppress(RefusalError):
+        if granted_threads(2) == 2:
+            own = os.dup(descriptor)
+            try:
+                threading.Thread(target=_beat, args=(own, released), daemon=True).start()
+            except RuntimeError:
+                os.close(own)
 
 
 def _beat(descriptor: int, released: threading.Event) -> None:

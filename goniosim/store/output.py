@@ -89,12 +89,11 @@ class Reservation:
         """
         with explained(self._shown):
             _write(self._part.descriptor, parts)
-        with turn(self._target.parent):
-            # Also what fails on the way to an answer on what stands there.
-            with explained(self._shown):
-                _refuse_to_destroy(self._target, self._shown, self._kind)
-                check()
-                self._part.move(self._target)
+        # Also what fails on the way to an answer on what stands there.
+        with turn(self._target.parent), explained(self._shown):
+            _refuse_to_destroy(self._target, self._shown, self._kind)
+            check()
+            self._part.move(self._target)
         # The name itself survives a power cut only after this. Some network file systems refuse it.
         with contextlib.suppress(OSError):
             folder = os.open(self._target.parent, os.O_RDONLY)

@@ -181,12 +181,20 @@ def test_signs_of_life_are_given(target, monkeypatch):
 
 
 def test_a_system_without_further_threads(target, monkeypatch):
-    def refused(_):
-        raise RuntimeError("can't start new thread")
+    """The last one is left to the work."""
+    start, left = threading.Thread.start, [1]
 
-    monkeypatch.setattr(threading.Thread, "start", refused)
-    with Claim(target) as claim:
-        assert claim.owner is None
+    def limited(thread):
+        if not left[0]:
+            raise RuntimeError("can't start new thread")
+        left[0] -= 1
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", limited)
+    before = threading.active_count()
+    for left[0] in (1, 0):
+        with Claim(target) as claim:
+            assert claim.owner is None and threading.active_count() == before
 
 
 def test_of_two_that_find_a_dead_one_the_slower_gives_way(target, monkeypatch):
