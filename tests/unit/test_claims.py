@@ -12,8 +12,8 @@ import time
 import pytest
 
 from abandoned import ELSEWHERE, GONE, leave
-from goniosim import claims, owners
-from goniosim.claims import SILENCE, Claim, Owner, owner_of, remove_dead
+from goniosim import owners
+from goniosim.claims import SILENCE, Claim, Owner, life, owner_of, remove_dead, taking
 
 _HOLD = """
 import sys, time
@@ -166,7 +166,7 @@ def test_the_clock_of_this_machine_does_not_count(target, monkeypatch):
 
 
 def test_signs_of_life_are_given(target, monkeypatch):
-    monkeypatch.setattr(claims, "BEAT", 0.01)
+    monkeypatch.setattr(life, "BEAT", 0.01)
     with Claim(target):
         (path,) = target.parent.glob(".*.claim")
         os.utime(path, (0.0, 0.0))
@@ -199,7 +199,7 @@ def test_a_system_without_further_threads(target, monkeypatch):
 
 def test_of_two_that_find_a_dead_one_the_slower_gives_way(target, monkeypatch):
     """Each way in which one comes between the look and the move of another."""
-    look = claims._look
+    look = taking.look
     for after in range(1, 4):
         leave(target, pid=GONE)
         calls, first = [], []
@@ -208,13 +208,13 @@ def test_of_two_that_find_a_dead_one_the_slower_gives_way(target, monkeypatch):
             found = look(path)
             calls.append(path)
             if len(calls) == after:
-                monkeypatch.setattr(claims, "_look", look)
+                monkeypatch.setattr(taking, "look", look)
                 first.append(Claim(target))
             return found
 
-        monkeypatch.setattr(claims, "_look", slow)
+        monkeypatch.setattr(taking, "look", slow)
         second = Claim(target)
-        monkeypatch.setattr(claims, "_look", look)
+        monkeypatch.setattr(taking, "look", look)
         got = [claim for claim in (*first, second) if claim.owner is None]
         assert len(got) == 1
         got[0].release()
@@ -224,7 +224,7 @@ def test_of_two_that_find_a_dead_one_the_slower_gives_way(target, monkeypatch):
 def test_one_that_died_as_it_took_over_is_no_obstacle(target):
     path = leave(target, pid=GONE)
     text = path.read_text()
-    successor = path.with_name(f"{path.name}.{claims._look(path).digest}")
+    successor = path.with_name(f"{path.name}.{taking.look(path).digest}")
     successor.write_text(text)
     with Claim(target) as claim:
         assert claim.owner is None
@@ -263,8 +263,9 @@ _RACE = """
 import sys, time, os
 from pathlib import Path
 from goniosim import claims
+from goniosim.claims import taking
 if sys.argv[3] == "no locks":
-    claims.try_lock = lambda *_, **__: None
+    taking.try_lock = lambda *_, **__: None
 folder, name = Path(sys.argv[1]), sys.argv[2]
 inside = folder / "inside"
 held = 0
