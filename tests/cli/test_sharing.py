@@ -170,6 +170,9 @@ def test_a_finished_material_keeps_no_claim_of_the_dead(goniosim, out, traced):
     goniosim(*ASKED, "-q")
     leave(out / "coat-0.1.h5", pid=GONE)
     assert goniosim(*ASKED, "-q") == (0, "", "")
+    assert visible(out) == NAMES
+    leave(out / "coat-0.1.h5", pid=GONE)
+    package.simulate_study(STUDY, folder="out")
     assert visible(out) == NAMES and len(traced) == 3
 
 
