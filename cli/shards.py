@@ -65,8 +65,8 @@ def trace(described, text, output, time_limit, every, quiet, verbose):
     progress = make_progress(Division(plan).rays(number), quiet)
     with StopSignals(time_limit) as signals, contextlib.closing(progress):
 
-        def begin(task):
-            signals.gathering = False
+        def begin(task, claim):
+            signals.gathering, signals.claim = False, claim
             label = f"{number}/{count} {task.scene.material.name}"
             if verbose:
                 progress.note(effects_text(task.scene))

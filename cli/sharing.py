@@ -1,6 +1,6 @@
 """Materials of a command, shared with other processes that simulate the same ones."""
 
-from goniosim.errors import OutputError
+from goniosim.errors import InUseError
 from goniosim.scene import total_rays
 
 
@@ -21,7 +21,7 @@ def leave_to_others(sharing, note):
 
     Raises
     ------
-    OutputError
+    InUseError
         If it is a scene by itself, and so all that was asked for.
     """
     if sharing.finished:
@@ -30,7 +30,7 @@ def leave_to_others(sharing, note):
         return
     job, owner = sharing.owners[0]
     if not job.of_study:
-        raise OutputError(
+        raise InUseError(
             f"{job.path}: another process is at work on it ({owner}); wait for its end, or choose another place with -o"
         )
     who = dict.fromkeys(f"host {owner.host}, pid {owner.pid}" for _, owner in sharing.owners)

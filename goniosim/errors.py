@@ -72,6 +72,10 @@ class OutputError(GoniosimError):
         super().__init__(message)
 
 
+class InUseError(OutputError):
+    """Another process is at work on the output."""
+
+
 class FewerRaysError(OutputError):
     """What stands at the output has more rays of the same scene than what should replace it.
 
