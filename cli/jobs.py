@@ -249,7 +249,7 @@ def _done(job, label, progress, signals, verbose, overwrite, anew, every):
         progress.note(effects_text(job.scene))
     signals.gathering = False
     with job.reserve() as signals.reservation:
-        seconds = _warm_up(job.scene, progress)
+        seconds = prepare_kernels(job.scene, progress)
         if verbose:
             progress.note(f"{label}: kernels ready after {duration(seconds)}")
             for notice in notices:
@@ -314,7 +314,7 @@ def _left(job, progress):
     return None
 
 
-def _warm_up(scene, progress):
+def prepare_kernels(scene, progress):
     """Compile or load the kernels, saying so when it takes long; return the seconds.
 
     The compiler cannot be interrupted, so it runs in a thread of its own while

@@ -4,6 +4,7 @@ import contextlib
 from dataclasses import replace
 from pathlib import Path
 
+from .jobs import prepare_kernels
 from .policy import say
 from .signals import StopSignals
 
@@ -70,6 +71,7 @@ def trace(described, text, output, time_limit, every, quiet, verbose):
             label = f"{number}/{count} {task.scene.material.name}"
             if verbose:
                 progress.note(effects_text(task.scene))
+            prepare_kernels(task.scene, progress)
 
             def report(done, total):
                 if not signals.gathering:

@@ -59,7 +59,8 @@ def run_shard(
     every : float
         Seconds between two checkpoints, at least.
     begin : callable
-        Called with each task that is begun and the claim on its file; returns what to call as ``progress(done_rays, total_rays)``, if anything.
+        Called with each task that is begun and the claim on its file; returns what to call as
+        ``progress(done_rays, total_rays)``, if anything.
     note : callable
         Called with a line on what was found.
 
