@@ -50,10 +50,11 @@ def dask_executor(address: str, threads: int = 1) -> Iterator[tuple[Executor, in
     RefusalError
         If no scheduler answers, or its workers are lost or cannot do what they are to do.
     """
+    # What happens to shards, the command tells in its own words.
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     with contextlib.ExitStack() as stack:
         if address == LOCAL:
-            # What happens to them, the command tells.
-            logging.getLogger("distributed").setLevel(logging.CRITICAL)
             # Otherwise it asks the libraries of this very process for a single thread, and of what follows too.
             stack.enter_context(dask.config.set({"distributed.nanny.pre-spawn-environ": {}}))
             count = max(1, available_cores() // threads)

@@ -7,7 +7,7 @@ import threading
 import time
 import uuid
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -121,10 +121,10 @@ def spread(
                 _touch(sign)
                 end = time.monotonic() + _PATIENCE
         progress(sum(known.values()), total)
-    except BrokenExecutor as error:
+    except (BrokenExecutor, CancelledError) as error:
         raise RefusalError(
-            f"{folder}: a process ended while it traced a shard: killed by somebody, or for want of memory; what is "
-            "done stays: run this again, with fewer processes if memory is short"
+            f"{folder}: a shard was given up: its process, or the scheduler, was ended by somebody or for want of "
+            "memory; what is done stays: run this again, with fewer processes if memory is short"
         ) from error
     finally:
         if pending:

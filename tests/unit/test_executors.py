@@ -3,7 +3,7 @@
 import multiprocessing
 import signal
 import threading
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
 import pytest
@@ -135,15 +135,21 @@ def test_a_shard_that_fails_holds_up_no_other(pool, tmp_path, monkeypatch, whole
 
 
 class Broken(Executor):
+    """Whose processes are killed, or that is shut down by somebody."""
+
+    def __init__(self, error):
+        self.error = error
+
     def submit(self, function, *arguments):
         future = Future()
-        future.set_exception(BrokenProcessPool("A process in the process pool was terminated abruptly"))
+        future.set_exception(self.error)
         return future
 
 
-def test_a_pool_whose_process_was_killed(tmp_path):
-    with pytest.raises(RefusalError, match="a process ended while it traced a shard: .* run this again") as caught:
-        call(Broken(), folder=tmp_path / "out")
+@pytest.mark.parametrize("error", [BrokenProcessPool("A process was terminated abruptly"), CancelledError("lost")])
+def test_an_executor_that_gives_up(tmp_path, error):
+    with pytest.raises(RefusalError, match="a shard was given up: .* run this again") as caught:
+        call(Broken(error), folder=tmp_path / "out")
     assert "\n" not in str(caught.value)
 
 
