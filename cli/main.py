@@ -13,6 +13,7 @@ from .policy import PolicyGroup, debug_option
 from .schema import schema
 from .simulate import simulate
 from .versions import versions
+from .warmup import warmup
 
 
 def _show_version(ctx, param, value):
@@ -63,5 +64,5 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (init, simulate, check, cost, info, plot, compare, models, schema, versions):
+for command in (init, simulate, check, cost, info, plot, compare, models, schema, versions, warmup):
     main.add_command(command)
