@@ -1,7 +1,9 @@
-"""The Monte Carlo engine: `simulate`, `probe` for a short trial, and what a simulation needs of memory."""
+"""The Monte Carlo engine: `simulate`, whole or in portions, `probe` for a short trial, and what it needs of memory."""
 
 from .estimators.choose import estimators_of
 from .memory import memory_needed, require_memory, shortage, threads_of
+from .pieces import piece_rays
+from .portions import join_portions, trace_portion
 from .probe import Probe, probe, warm_up
 from .simulate import checked_state, simulate
 
@@ -9,11 +11,14 @@ __all__ = [
     "Probe",
     "checked_state",
     "estimators_of",
+    "join_portions",
     "memory_needed",
+    "piece_rays",
     "probe",
     "require_memory",
     "shortage",
     "simulate",
     "threads_of",
+    "trace_portion",
     "warm_up",
 ]

@@ -11,7 +11,7 @@ from .layout import N_LEDGER
 from .packing import array
 from .runs import Spending, Work
 from .schedule import MOST_LEDGERS, Schedule
-from .unit import Tally, Workspace, unit_key
+from .unit import PARTS, Tally, Workspace, unit_key
 
 # Rays of a direction in the first round of a run that stops at an accuracy.
 FIRST_ROUND = 1 << 17
@@ -49,6 +49,7 @@ class AnalogRun:
         self._plan, self._key = plan, key
         self._faint = None
         self.tallies = [Tally(plan) for _ in range(directions)]
+        self._open = [None] * directions
         self._units = [0] * directions
         self._issued = [0] * directions
         self.ledgers = [[] for _ in range(directions)]
@@ -82,11 +83,11 @@ class AnalogRun:
 
     def _works(self, rays, chosen):
         schedule = Schedule(len(chosen), rays)
-        checkpoints = set(schedule.checkpoints)
+        checkpoints, ends = set(schedule.checkpoints), set(schedule.ends)
         made = []
         for direction, unit, share in map(schedule.__getitem__, range(len(schedule))):
             m = chosen[direction]
-            made.append(Work(m, self._issued[m], share, last=unit + 1 in checkpoints))
+            made.append(Work(m, self._issued[m], share, last=unit + 1 in checkpoints, ends=unit + 1 in ends))
             self._issued[m] += 1
         return made
 
@@ -114,38 +115,79 @@ class AnalogRun:
     def reduce(self, work, report, tally):
         """Add up a work unit."""
         direction = work.direction
-        self._units[direction] += 1
-        self.tallies[direction].histogram += tally.histogram
-        self.ledgers[direction].extend(tally.ledgers.copy())
-        self.part_rays[direction].extend(report.part_rays)
-        if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
-            self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
-            self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
+        self._add(direction, tally.histogram, work.ends)
+        self._book(direction, tally.ledgers.copy(), report.part_rays)
         self.spending.book(direction, report.events, report.cpu_seconds)
         tally.clear()
 
-    def state(self):
-        """What has been added up, as a tree for `packing.pack`."""
+    def _add(self, direction, histogram, ends):
+        held = self._open[direction]
+        if held is not None:
+            held += histogram
+        elif not ends:
+            self._open[direction] = histogram.copy()
+        if ends:
+            self.tallies[direction].histogram += histogram if held is None else held
+            self._open[direction] = None
+
+    def _book(self, direction, ledgers, part_rays):
+        self._units[direction] += 1
+        self.ledgers[direction].extend(ledgers)
+        self.part_rays[direction].extend(part_rays)
+        if len(self.ledgers[direction]) >= 2 * MOST_LEDGERS:
+            self.ledgers[direction] = _added_in_pairs(self.ledgers[direction])
+            self.part_rays[direction] = _added_in_pairs(self.part_rays[direction])
+
+    def state(self, direction):
+        """What has been added up of one direction, as a tree for `packing.pack`."""
         return {
-            "histograms": [tally.histogram for tally in self.tallies],
-            "units": self._units,
-            "ledgers": [np.array(parts) for parts in self.ledgers],
-            "part_rays": self.part_rays,
-            "spending": self.spending.state(),
+            "histogram": self.tallies[direction].histogram,
+            "open": self._open[direction],
+            "units": self._units[direction],
+            "ledgers": np.array(self.ledgers[direction]),
+            "part_rays": self.part_rays[direction],
+            "spending": self.spending.state(direction),
         }
 
-    def restore(self, state):
+    def restore(self, direction, state):
         """Go on from such a tree; pieces of work are handed out anew."""
-        for tally, histogram in zip(self.tallies, state["histograms"], strict=True):
-            tally.histogram[...] = array(histogram, tally.histogram.shape)
-        self._units = list(state["units"])
-        shape = (-1, N_LEDGER, self._plan.n_distinct)
-        self.ledgers = [list(array(parts, shape)) if len(parts) else [] for parts in state["ledgers"]]
-        self.part_rays = [list(sizes) for sizes in state["part_rays"]]
-        self.spending.restore(state["spending"])
+        tally = self.tallies[direction].histogram
+        tally[...] = array(state["histogram"], tally.shape)
+        self._open[direction] = None if state["open"] is None else array(state["open"], tally.shape)
+        self._units[direction] = int(state["units"])
+        parts = state["ledgers"]
+        self.ledgers[direction] = list(array(parts, self._shape_of_ledgers)) if len(parts) else []
+        self.part_rays[direction] = [int(size) for size in state["part_rays"]]
+        self.spending.restore(direction, state["spending"])
+
+    @property
+    def _shape_of_ledgers(self):
+        return -1, N_LEDGER, self._plan.n_distinct
+
+    def apart(self):
+        """Sums of a section of their own."""
+        return SectionOfUnits(self._plan)
+
+    def reduce_apart(self, section, work, report, tally):
+        """Add up a work unit in a section of its own."""
+        section.add(tally, report.part_rays)
+
+    def join(self, works, state):
+        """Take in a section, of some pieces of work, that was added up elsewhere."""
+        direction = works[0].direction
+        self.finish_round(direction)
+        self._add(direction, array(state["histogram"], self.tallies[direction].histogram.shape), True)
+        ledgers, sizes = array(state["ledgers"], self._shape_of_ledgers), state["part_rays"]
+        if not len(ledgers) == len(sizes) <= PARTS * len(works):
+            raise ValueError("not the state of this run: numbers of parts that contradict each other")
+        for first in range(0, len(ledgers), PARTS):
+            self._book(direction, ledgers[first : first + PARTS], sizes[first : first + PARTS])
 
     def finish_round(self, direction):
-        """Nothing is left to do at a checkpoint."""
+        """Close the section that is open."""
+        if self._open[direction] is not None:
+            self.tallies[direction].histogram += self._open[direction]
+            self._open[direction] = None
 
     def estimate(self, side, direction, order=None):
         """What is known of a component, or of one of its orders, in one direction.
@@ -167,6 +209,37 @@ class AnalogRun:
         energy, stderr = mean_and_error(total, squares, rays)
         _, total_stderr = sum_and_error(energy, stderr, Paths(energy, rays))
         return Estimate(energy, stderr, total_stderr, rays, hits)
+
+
+class SectionOfUnits:
+    """What some work units of one direction add up to, in the order of their numbers.
+
+    Parameters
+    ----------
+    plan : goniosim.engine.plan.Plan
+    """
+
+    def __init__(self, plan):
+        self._histogram, self._ledgers, self._part_rays = Tally(plan).histogram, [], []
+        self._shape_of_ledgers = -1, N_LEDGER, plan.n_distinct
+
+    def add(self, tally, part_rays):
+        """Take in a work unit, and clear its tally."""
+        self._histogram += tally.histogram
+        self._ledgers.extend(tally.ledgers.copy())
+        self._part_rays.extend(part_rays)
+        tally.clear()
+
+    def state(self):
+        """As a tree for `packing.pack`."""
+        return {"histogram": self._histogram, "ledgers": np.array(self._ledgers), "part_rays": self._part_rays}
+
+    def restore(self, state):
+        """Go on from such a tree."""
+        self._histogram[...] = array(state["histogram"], self._histogram.shape)
+        ledgers = state["ledgers"]
+        self._ledgers = list(array(ledgers, self._shape_of_ledgers)) if len(ledgers) else []
+        self._part_rays = [int(size) for size in state["part_rays"]]
 
 
 def _added_in_pairs(values):

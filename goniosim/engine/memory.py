@@ -188,8 +188,8 @@ def _of_replicates(plan, choice, threads):
     return {
         "result": held,
         "file": int(_WRITTEN * held),
-        # Mean and variance of what is finished, of the round at work, and the effective number.
-        "tallies": len(plan.theta_deg) * views * 5 * replicate,
+        # Mean and scatter of what is finished, of the round at work and of its section.
+        "tallies": len(plan.theta_deg) * views * 6 * replicate,
         "threads": in_flight(ReplicatedRun.waiting, threads, pieces) * estimator.chunk * slots * replicate
         + threads * workspace,
         "scratch": 4 * views * replicate,

@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from .replicates import Replicates, unfold
 from .rounds import REPLICATES as N_REPLICATES
 from .rounds import chunks, sizes
 from .runs import Spending, Work
+from .section import SECTION, Section
 from .unit import child_key
 
 # Child of the seed's key, beside the work units' and the pilot's.
@@ -57,6 +59,7 @@ class ReplicatedRun:
         self._views, self._place = _views(plan, self.sides)
         directions = len(plan.theta_deg)
         alike = PARAMETRIZATIONS[plan.parametrization_name][1].ALIKE if estimator.mends else None
+        self._section = partial(Section, self._views, self._shape, plan.columns)
         self._sums = [Replicates(self._views, self._shape, plan.columns, alike) for _ in range(directions)]
         self._issued = [0] * directions
         self._first = {}
@@ -105,7 +108,9 @@ class ReplicatedRun:
             self._issued[m] += size * N_REPLICATES
         # All directions advance together.
         made = [
-            Work(m, number, size * len(piece), piece, last=piece is pieces[-1]) for piece in pieces for m in directions
+            Work(m, number, size * len(piece), piece, last=piece is pieces[-1], ends=piece.stop % SECTION == 0)
+            for piece in pieces
+            for m in directions
         ]
         if number == 0 and self._estimator.has_nodes:
             first = len(directions)
@@ -156,23 +161,36 @@ class ReplicatedRun:
         change = (coarse.mean(axis=0) - self._first.pop(direction)).sum(axis=0)
         self.bias[direction] = noise(self._plan, direction, unfold(change, self._plan.columns))
 
-    def state(self):
-        """What has been added up, as a tree for `packing.pack`."""
+    def state(self, direction):
+        """What has been added up of one direction, as a tree for `packing.pack`."""
         return {
-            "sums": [sums.state() for sums in self._sums],
-            "first": _by_direction(self._first),
-            "bias": _by_direction(self.bias),
-            "spending": self.spending.state(),
+            "sums": self._sums[direction].state(),
+            "first": self._first.get(direction),
+            "bias": self.bias.get(direction),
+            "spending": self.spending.state(direction),
         }
 
-    def restore(self, state):
+    def restore(self, direction, state):
         """Go on from such a tree; pieces of work are handed out anew."""
-        for sums, values in zip(self._sums, state["sums"], strict=True):
-            sums.restore(values)
-        shape = (self._slots, *self._shape)
-        self._first = {int(direction): array(values, shape) for direction, values in state["first"]}
-        self.bias = {int(direction): float(value) for direction, value in state["bias"]}
-        self.spending.restore(state["spending"])
+        self._sums[direction].restore(state["sums"])
+        if state["first"] is not None:
+            self._first[direction] = array(state["first"], (self._slots, *self._shape))
+        if state["bias"] is not None:
+            self.bias[direction] = float(state["bias"])
+        self.spending.restore(direction, state["spending"])
+
+    def apart(self):
+        """Sums of a section of their own."""
+        return self._section()
+
+    def reduce_apart(self, section, work, report, buffer):
+        """Add up replicates in a section of its own: not one of the first, which tells the bias of the nodes."""
+        for slots in buffer[: len(work.replicates)]:
+            section.add(slots)
+
+    def join(self, works, state):
+        """Take in a section, of some pieces of work, that was added up elsewhere."""
+        self._sums[works[0].direction].join(works[0].rays // len(works[0].replicates), state)
 
     def finish_round(self, direction):
         """Add a round up, or what there is of it."""
@@ -184,11 +202,6 @@ class ReplicatedRun:
         energy, stderr = sums.slices(view)
         bias = self.bias.get(direction) if order is None else None
         return Estimate(energy, stderr, sums.total_stderr(view), sums.count, batches=sums.batches(view), bias=bias)
-
-
-def _by_direction(found):
-    """Pairs: the keys of a packed tree are strings."""
-    return [list(pair) for pair in found.items()]
 
 
 def _views(plan, sides):

@@ -1,9 +1,11 @@
 """Means and standard errors from independent replicates of slices, all of one incident direction.
 
-Within a round the scatter of the replicates is followed by Welford's recurrence, so that nothing is kept of a single
-one but its sums over blocks of cells. Rounds are added up with weights that were fixed before they were run, and so
-their variances add.
+Within a round the scatter of the replicates is followed section by section, so that nothing is kept of a single one
+but its sums over blocks of cells. Rounds are added up with weights that were fixed before they were run, and so their
+variances add.
 """
+
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +13,7 @@ from ..sums import block_sums
 from .mending import mended
 from .packing import array
 from .rounds import FEWEST_REPLICATES, REPLICATES
-from .welford import FoldedBlocks, Welford
+from .section import SECTION, Section
 
 
 class Replicates:
@@ -37,9 +39,8 @@ class Replicates:
     """
 
     def __init__(self, views, shape, columns, alike):
-        self._views = views
         self._columns = columns
-        self._blocks_of = FoldedBlocks(shape[1], columns, shape[2])
+        self._empty = partial(Section, views, shape, columns)
         self._alike = alike
         slices, sums = (len(views), *shape), (len(views), shape[0])
         self._cells, self._totals, self._batches = _Sum(slices), _Sum(sums), 0.0
@@ -48,8 +49,7 @@ class Replicates:
 
     def _begin(self, size):
         self._size = size
-        self._round, self._round_totals = Welford(), Welford()
-        self._round_blocks = []
+        self._round, self._section = self._empty(), self._empty()
 
     @property
     def weight(self):
@@ -59,7 +59,7 @@ class Replicates:
     @property
     def gathered(self):
         """Whether there would be something to keep."""
-        return self.weight > 0.0 or self._round.count >= 2
+        return self.weight > 0.0 or self._round.count + self._section.count >= 2
 
     def add(self, number, size, slots):
         """Take in the ``number``-th replicate of a round.
@@ -74,29 +74,46 @@ class Replicates:
         if number == 0:
             self._begin(size)
         # After a stop, replicates count only as far as none is missing before them.
-        if number != self._round.count or size != self._size:
+        if number != self._round.count + self._section.count or size != self._size:
             return
-        views = (
-            slots
-            if len(slots) == len(self._views) == 1
-            else np.stack([slots[view].sum(axis=0) for view in self._views])
-        )
-        blocks = self._blocks_of(views)
-        self._round.add(views)
-        self._round_totals.add(blocks.sum(axis=(2, 3)))
-        self._round_blocks.append(blocks)
+        self._section.add(slots)
+        if self._section.count == SECTION:
+            self._close()
+
+    def join(self, size, state):
+        """Take in a section of a round that was added up elsewhere.
+
+        Parameters
+        ----------
+        size : int
+            Light paths of a replicate.
+        state : tree
+            As of `Section.state`.
+        """
+        self._close()
+        if self._round.count == 0:
+            self._begin(size)
+        section = self._empty()
+        section.restore(state)
+        self._round.join(section)
+
+    def _close(self):
+        self._round.join(self._section)
+        self._section = self._empty()
 
     def finish_round(self):
         """Add the round up; one of too few replicates is dropped, unless there is no other."""
+        self._close()
         count = self._round.count
         if count >= FEWEST_REPLICATES or (count >= 2 and self.weight == 0.0):
             weight = float(count * self._size)
-            variance = self._round.variance_of_mean()
+            cells, totals = self._round.cells, self._round.totals
+            variance = cells.variance_of_mean()
             if self._alike is not None:
-                variance = mended(self._round.mean, variance, self._alike)
-            self._cells.add(self._round.mean, variance, weight)
-            self._totals.add(self._round_totals.mean, self._round_totals.variance_of_mean(), weight)
-            self._batches += weight / self.weight * (_as_many(np.stack(self._round_blocks)) - self._batches)
+                variance = mended(cells.mean, variance, self._alike)
+            self._cells.add(cells.mean, variance, weight)
+            self._totals.add(totals.mean, totals.variance_of_mean(), weight)
+            self._batches += weight / self.weight * (_as_many(np.stack(self._round.blocks)) - self._batches)
             self.paths += count * self._size
             self.count += count
         self._begin(0)
@@ -109,8 +126,8 @@ class Replicates:
             "paths": self.paths,
             "count": self.count,
             "size": self._size,
-            "round": [self._round.state(), self._round_totals.state()],
-            "round_blocks": self._round_blocks,
+            "round": self._round.state(),
+            "section": self._section.state(),
         }
 
     def restore(self, state):
@@ -118,12 +135,11 @@ class Replicates:
         for each, values in zip((self._cells, self._totals), state["sums"], strict=True):
             each.restore(values)
         self.paths, self.count, self._size = (int(state[name]) for name in ("paths", "count", "size"))
-        blocks = self._blocks_of.shape(self._cells.mean.shape)
-        self._batches = array(state["batches"], (REPLICATES, *blocks)) if self.count else 0.0
-        shapes = self._cells.mean.shape, self._totals.mean.shape
-        for each, values, shape in zip((self._round, self._round_totals), state["round"], shapes, strict=True):
-            each.restore(values, shape)
-        self._round_blocks = [array(values, blocks) for values in state["round_blocks"]]
+        self._begin(self._size)
+        blocks = (REPLICATES, *self._round.shape_of_blocks)
+        self._batches = array(state["batches"], blocks) if self.count else 0.0
+        self._round.restore(state["round"])
+        self._section.restore(state["section"])
 
     def slices(self, view):
         """Energy and its standard error of a view, each of shape (channels, rows, columns)."""

@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .packing import array
-
 
 @dataclass(frozen=True)
 class Work:
@@ -24,6 +22,8 @@ class Work:
         Whether a checkpoint of the direction follows.
     coarse : bool
         Whether only every second node is used, so that the bias of the nodes is seen.
+    ends : bool
+        Whether a section of sums ends with it.
     """
 
     direction: int
@@ -32,6 +32,7 @@ class Work:
     replicates: range | None = None
     last: bool = False
     coarse: bool = False
+    ends: bool = False
 
 
 def in_flight(waiting, threads, works):
@@ -73,15 +74,19 @@ class Spending:
         self.events += other.events
         self.cpu_seconds += other.cpu_seconds
 
-    def state(self):
-        """As a tree for `packing.pack`."""
-        return {"events": self.events, "cpu_seconds": self.cpu_seconds, "checkpoints": self.checkpoints}
+    def state(self, direction):
+        """What one direction has cost, as a tree for `packing.pack`."""
+        return {
+            "events": self.events[direction],
+            "cpu_seconds": self.cpu_seconds[direction],
+            "checkpoints": self.checkpoints[direction],
+        }
 
-    def restore(self, state):
+    def restore(self, direction, state):
         """Go on from such a tree."""
-        self.events = array(state["events"], self.events.shape, np.int64)
-        self.cpu_seconds = array(state["cpu_seconds"], self.cpu_seconds.shape)
-        self.checkpoints = [[tuple(row) for row in rows] for rows in state["checkpoints"]]
+        self.events[direction] = int(state["events"])
+        self.cpu_seconds[direction] = float(state["cpu_seconds"])
+        self.checkpoints[direction] = [tuple(row) for row in state["checkpoints"]]
 
     def note(self, direction, rays, seconds, errors):
         """Note a checkpoint.

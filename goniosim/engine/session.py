@@ -25,7 +25,7 @@ from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 from .unit import child_key
 
 # Of `Session.state`, to be raised whenever one of before would not lead to the same bits.
-VERSION = [1, version_of("goniosim")]
+VERSION = [2, version_of("goniosim")]
 # Child of the seed's key, for a run that takes the place of another.
 BRANCH = 5
 # What nodes may be off by is no more than that share of a target, or the noise would have to be less than half of it.
@@ -129,9 +129,7 @@ class Session:
         if not self.finished and self.left is None:
             # Stopped between two pieces of work.
             self._leave()
-        # Short, if somebody waits for an end that is none yet.
-        rays = AUDIT_RAYS if self.finished else LEAST_AUDIT_RAYS
-        self.audit = next((run for run in self.runs if run.audits), None) or self._audited(rays)
+        self.look_where_energy_goes()
 
     def _choose(self):
         asked = self.simulation
@@ -177,7 +175,8 @@ class Session:
     def _take_over(self, state):
         """Go on from a state; returns the seconds of its last call."""
         for run, values, spent in zip(self.runs, state["runs"], state["spent"], strict=True):
-            run.restore(values)
+            for direction, of_direction in zip(range(len(run.rays)), values, strict=True):
+                run.restore(direction, of_direction)
             self._spent[run] = float(spent)
         self._added = int(state["added"])
         since = float(state["within"])
@@ -212,7 +211,7 @@ class Session:
             "within": 0.0 if self._began is None else now - self._began,
             "spent": [self._spent.get(run, 0.0) for run in self.runs],
             "choices": [[choice.estimator, choice.sides, choice.reason] for choice in self.choices],
-            "runs": [run.state() for run in self.runs],
+            "runs": [[run.state(direction) for direction in range(len(run.rays))] for run in self.runs],
         }
 
     def look_at(self, state):
@@ -234,7 +233,13 @@ class Session:
                 noted = run.spending.checkpoints[direction]
                 if run.rays[direction] and (not noted or noted[-1][0] != run.rays[direction]):
                     self._note(run, direction)
-        self.audit = next((run for run in self.runs if run.audits), None) or self._audited(LEAST_AUDIT_RAYS)
+        self.look_where_energy_goes()
+
+    def look_where_energy_goes(self):
+        """Fill `audit`, by a short run of its own where no other tells."""
+        # Shorter, if somebody waits for an end that is none yet.
+        rays = AUDIT_RAYS if self.finished else LEAST_AUDIT_RAYS
+        self.audit = next((run for run in self.runs if run.audits), None) or self._audited(rays)
 
     def _audited(self, rays):
         """Where all energy goes, by an analog run that has no slices."""

@@ -1,22 +1,16 @@
 """The driver: estimators chosen, their runs done, results assembled."""
 
+import contextlib
 import threading
-
-import numpy as np
 
 from ..cores import granted_threads
 from ..errors import ResourceError, StoppedError, UnusableResultError
-from ..free_memory import free_memory
-from ..integration import Pool
-from ..provenance import provenance
-from ..result import Result
-from ..scene import CHANNELS, effects, with_arguments
-from . import assembly, estimate
+from ..scene import with_arguments
 from .blas import one_thread
 from .checkpoints import Checkpoints
-from .direct import direct_reflection
 from .drive import Drive
 from .memory import memory_needed, require_memory, threads_of
+from .outcome import has_room, integrate_direct, progress_of, result_of
 from .packing import pack, unpack
 from .plan import make_plan
 from .probe import warm_up
@@ -64,10 +58,17 @@ def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, re
     """
     scene = with_arguments(scene, given)
     require_memory(scene)
+    with guarded():
+        return _simulate(scene, progress, stop or threading.Event(), checkpoint, every, resume)
+
+
+@contextlib.contextmanager
+def guarded():
+    """Around a whole simulation: the library of linear algebra on one thread, and a word where memory runs out."""
     try:
         # Not around single products: the library's own threads spin for a while after each.
         with one_thread():
-            return _simulate(scene, progress, stop or threading.Event(), checkpoint, every, resume)
+            yield
     except MemoryError as error:
         raise ResourceError(
             "memory ran out: another process took it, or a limit is lower than it looks; "
@@ -104,14 +105,9 @@ def _simulate(scene, progress, stop, checkpoint, every, resume):
     before = None if resume is None else checked_state(resume)
     plan, threads = make_plan(scene), granted_threads(threads_of(scene))
     warm_up(scene)
-    direct = _integrate_direct(plan, threads, stop)
+    direct = integrate_direct(plan, threads, stop)
 
     needed = memory_needed(scene)
-
-    def has_room(n_bytes):
-        # Rather no checkpoint than the end of the run.
-        free = free_memory()
-        return free is None or free[0] >= n_bytes
 
     def keep(session):
         if not has_room(needed.checkpoint):
@@ -119,49 +115,12 @@ def _simulate(scene, progress, stop, checkpoint, every, resume):
         looked_at = Session(plan, scene.simulation, Drive(1, threading.Event(), lambda done, total: None))
         looked_at.look_at(session.state())
         if any(looked_at.rays):
-            checkpoint(_result(scene, plan, threads, direct, looked_at, pack(session.state())))
+            checkpoint(result_of(scene, plan, threads, direct, looked_at, pack(session.state())))
 
     keeping = None if checkpoint is None else Checkpoints(every, keep)
-    session = Session(plan, scene.simulation, Drive(threads, stop, _progress_of(scene, progress)), keeping, before)
+    session = Session(plan, scene.simulation, Drive(threads, stop, progress_of(scene, progress)), keeping, before)
     session.has_room = lambda: has_room(needed.state + needed.result + needed.file)
     session.run()
     if not any(session.rays):
         raise StoppedError("stopped before the first rays were through: there is nothing to keep")
-    return _result(scene, plan, threads, direct, session, session.left)
-
-
-def _result(scene, plan, threads, direct, session, state):
-    found = assembly.components(plan, session.runs, direct)
-    return Result(
-        config_yaml=scene.to_yaml(),
-        config_hash=scene.config_hash(),
-        name=scene.material.name,
-        status="complete" if session.finished else "partial",
-        seed=scene.simulation.seed,
-        theta_deg=plan.theta_deg,
-        phi_deg=np.zeros_like(plan.theta_deg),
-        rays=np.array(session.rays, dtype=np.int64),
-        channels=list(CHANNELS),
-        cells=estimate.cells(plan),
-        components=found,
-        audit=estimate.audit(plan, session.audit.ledgers, session.audit.part_rays, found["reflection/direct"]),
-        cost=assembly.cost(plan, session.runs),
-        effects={effect.name: effect.active for effect in effects(scene)},
-        provenance={**provenance(threads), **session.provenance},
-        target_reached=session.reached,
-        state=None if session.finished else state,
-    )
-
-
-def _progress_of(scene, progress):
-    """Light paths of all runs, told in rays of the scene: an audit and further components are work too."""
-    if progress is None:
-        return lambda done, total: None
-    whole = scene.total_rays
-    return lambda done, total: progress(done if whole is None else whole * done // max(total, 1), whole)
-
-
-def _integrate_direct(plan, threads, stop):
-    """`direct_reflection` of every direction; before tracing, so that a stop need not wait for it."""
-    with Pool(threads) as pool:
-        return [direct_reflection(plan, direction, pool, stop) for direction in range(len(plan.theta_deg))]
+    return result_of(scene, plan, threads, direct, session, session.left)

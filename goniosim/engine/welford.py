@@ -22,6 +22,20 @@ class Welford:
         self.count += 1
         _take_in(np.ascontiguousarray(values).reshape(-1), self.count, self.mean.reshape(-1), self._squares.reshape(-1))
 
+    def join(self, other):
+        """Take in what another one has taken in, after what this one has; the other is not to be used any more.
+
+        Chan, Golub and LeVeque, Updating formulae and a pairwise algorithm for computing sample variances, 1979.
+        """
+        if other.count == 0:
+            return
+        if self.count == 0:
+            self.count, self.mean, self._squares = other.count, other.mean, other._squares
+            return
+        flat = (each.reshape(-1) for each in (self.mean, self._squares, other.mean, other._squares))
+        _join(self.count, other.count, *flat)
+        self.count += other.count
+
     def state(self):
         """As a tree for `packing.pack`."""
         return [self.count, self.mean, self._squares]
@@ -74,6 +88,16 @@ def _take_in(values, count, mean, squares):
         step = values[i] - mean[i]
         mean[i] += step * share
         squares[i] += step * (values[i] - mean[i])
+
+
+@kernel
+def _join(count, more, mean, squares, mean_of_more, squares_of_more):
+    share = more / (count + more)
+    weight = count * share
+    for i in range(mean.shape[0]):
+        step = mean_of_more[i] - mean[i]
+        mean[i] += step * share
+        squares[i] += squares_of_more[i] + step * step * weight
 
 
 @kernel

@@ -64,7 +64,7 @@ def test_arrays_of_other_shapes_and_types_are_refused(left):
             with pytest.raises(UnusableResultError, match="does not fit the scene"):
                 run(scene, resumed=changed(tree, path, wrong))
             tried += 1
-    assert tried >= 36
+    assert tried >= 24
 
 
 @pytest.mark.parametrize("name", ["journal", "seconds", "done", "calls", "took", "added", "within", "spent", "runs"])

@@ -46,9 +46,11 @@ def content(session):
     """Everything but times, as bytes."""
     found = []
     for one in session.runs:
-        tree = one.state()
-        tree["spending"] = [tree["spending"]["events"], [[row[0] for row in rows] for rows in one.spending.checkpoints]]
-        found.append(tree)
+        for direction in range(len(one.rays)):
+            tree = one.state(direction)
+            spent = tree["spending"]
+            tree["spending"] = [spent["events"], [row[0] for row in spent["checkpoints"]]]
+            found.append(tree)
     tables = [np.array(parts) for parts in session.audit.ledgers]
     return pack([found, tables, session.rays, session.reached, [str(choice) for choice in session.choices]])
 

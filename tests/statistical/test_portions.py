@@ -1,0 +1,64 @@
+"""A simulation in portions, joined, is the simulation in one go: to the same bits, however it was cut."""
+
+import itertools
+import threading
+
+import numpy as np
+import pytest
+
+from goniosim.engine import join_portions, piece_rays, simulate, trace_portion
+from goniosim.engine.packing import pack, unpack
+from goniosim.errors import StoppedError, UnusableResultError
+from goniosim.scene import with_arguments
+from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+
+METAL = [dielectric(1.5, 0.3), medium([0.05, 0.1, 0.8]), conductor(1.45, [1.0, 0.5, 0.5], 0.3)]
+SLAB = [dielectric(1.5, 0.001), medium(0.2), dielectric(1.0, 0.3)]
+NARROW = [dielectric(1.5, 0.01), conductor(1.45, 1.0, 0.01)]
+PLASTIC = [dielectric(1.5, 0.1), lambert(0.5)]
+CASES = {
+    "analog": (METAL, {"orders": 2}, {"rays": 20_000, "estimator": "analog"}),
+    "connection": (PLASTIC, {}, {"rays": 131_072}),
+    "operator": (METAL, {}, {"rays": 800_000}),
+    "split": (NARROW, {}, {"rays": 300_000}),
+    "two estimators": (SLAB, {}, {"rays": 300_000}),
+}
+
+
+def scene_of(case):
+    layers, orders, asked = CASES[case]
+    return with_arguments(make_scene(layers, [10.0, 70.0], rows=9, columns=36, **orders), asked)
+
+
+def portions(scene, n, **given):
+    """States of n portions of equally many pieces, or a few more or less."""
+    edges = [len(piece_rays(scene)) * k // n for k in range(n + 1)]
+    return [trace_portion(scene, a, b, **given)[0] for a, b in itertools.pairwise(edges) if b > a]
+
+
+def content(result):
+    """Everything but times and words, as bytes."""
+    parts = [result.rays, result.status, result.config_yaml, result.cost.rays, result.cost.error]
+    parts += [result.audit.energy, result.audit.stderr]
+    for name, component in result.components.items():
+        for one in (component, *component.orders.values()):
+            parts += [name, one.estimator, one.contains_delta]
+            arrays = (
+                getattr(one, field) for field in ("energy", "stderr", "bsdf", "bsdf_stderr", "albedo", "albedo_stderr")
+            )
+            parts += [*arrays, *(getattr(one, field) for field in ("uncertain", "hits", "batches", "node_bias"))]
+    return pack(parts)
+
+
+@pytest.fixture(scope="module")
+def wholes():
+    """Plain runs, by the name of the case."""
+    return {case: simulate(scene_of(case)) for case in CASES}
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("n", [1, 2, 5, pytest.param(13, marks=pytest.mark.slow)])
+def test_joined_to_the_same_bits(wholes, case, n):
+    scene = scene_of(case)
+    found = join_portions(scene, portions(scene, n))
+    assert found.status == "complete" and content(found) == content(wholes[case])
