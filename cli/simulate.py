@@ -35,12 +35,14 @@ from .signals import StopSignals
     metavar="TIME",
     help="Stop after so long, keep what was gathered, and exit with 75: 55m, 23h50m.",
 )
+@click.option("--only", multiple=True, metavar="MATERIAL", help="Of a study, only this material; may be repeated.")
+@click.option("--shard", metavar="K/N", help="Only the K-th of N equal shares of the work, into the folder OUT: 3/16.")
 @click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays, without asking.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @click.option("-v", "--verbose", is_flag=True, help="Also show effects and compilation time.")
 @debug_option
 @click.pass_context
-def simulate(ctx, config, output, overrides, checkpoint, time_limit, overwrite, quiet, verbose, **asked):
+def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard, overwrite, quiet, verbose, **asked):
     """Simulate a scene or study file and write the result.
 
     CONFIG is the file, or - for the standard input. A study writes one file per material into a folder.
@@ -50,10 +52,15 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, overwrite, 
     there, to the same numbers as without the interruption. A target that --max-rays or --max-time cut
     short leaves a result, and exit code 9.
 
+    With --shard the folder OUT takes one share of the work, for `goniosim merge` to join with the others. In a task
+    of a Slurm array auto/16 takes the number from SLURM_ARRAY_TASK_ID; the count may be left out where OUT holds
+    the plan of `goniosim plan`, and then CONFIG may be that folder too.
+
     \b
     Examples: goniosim simulate quickstart.yaml
               goniosim simulate quickstart.yaml --rays 1e7 --set simulation.orders=3
               goniosim simulate quickstart.yaml --target 1% --max-time 10m
+              goniosim simulate study.yaml --shard 3/16 -o shards
     """  # noqa: D301
     if output == "-":
         raise click.UsageError("a result is a file, not a stream: name it with -o")
@@ -64,9 +71,16 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, overwrite, 
     from goniosim.report.simulation.summary import summary
     from goniosim.scene import load_config, total_rays
 
-    from . import jobs
+    from . import jobs, shards
 
-    described = load_config(config, [*overrides, *overrides_of(asked)])
+    if shard is not None:
+        if overwrite:
+            raise click.UsageError("--overwrite does not go with --shard: remove what is to be made anew")
+        described = shards.only(shards.load(config, overrides, asked), only)
+        home = output or (config if Path(config).is_dir() else None)
+        times = seconds_of(time_limit), seconds_of(checkpoint)
+        ctx.exit(shards.trace(described, shard, home, *times, quiet, verbose))
+    described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
     notes = []

@@ -13,8 +13,8 @@ from .signals import tidied_up
 def warmup(config):
     """Compile for this machine and keep the result in the cache.
 
-    CONFIG is a scene or study file, or - for the standard input: what its simulation takes is compiled;
-    without it, the kernels of all estimators. Several at once, as in the jobs of one node, compile
+    CONFIG is a scene or study file, the folder of a plan, or - for the standard input: what its simulation
+    takes is compiled; without it, the kernels of all estimators. Several at once, as in the jobs of one node, compile
     nothing twice: the others wait, and load what the first has made. The cache is below NUMBA_CACHE_DIR,
     if that is set, or in the home folder.
 
@@ -25,9 +25,10 @@ def warmup(config):
     from goniosim._jit.folder import notices
     from goniosim.cluster.warmup import keep_warm, of_all_estimators
     from goniosim.report.text import counted, duration
-    from goniosim.scene import load_config
 
-    scenes = of_all_estimators() if config is None else load_config(config).scenes
+    from . import shards
+
+    scenes = of_all_estimators() if config is None else shards.load(config, [], {}).scenes
     with tidied_up():
         made = keep_warm(scenes)
     for notice in notices:

@@ -127,9 +127,20 @@ class StoppedError(GoniosimError):
 
 
 class UnusableResultError(GoniosimError):
-    """The file is sound, but it lacks what the command needs."""
+    """The file is sound, but it lacks what the command needs.
+
+    Parameters
+    ----------
+    message : str
+    details : sequence of str
+        Lines that stand before the message, where there is more than one thing to say.
+    """
 
     exit_code = 8
+
+    def __init__(self, message: str, details: Iterable[str] = ()) -> None:
+        self.details = list(details)
+        super().__init__(message)
 
 
 class RefusalError(GoniosimError):

@@ -1,1 +1,23 @@
-"""From one machine to many: compiled code kept ready, work in shards, and the batch system that runs them."""
+"""Simulations in shards, on any number of machines: cut, traced, looked after and merged."""
+
+from goniosim.cluster.division import Division, Task
+from goniosim.cluster.merging import merge
+from goniosim.cluster.plan_file import ShardPlan, plan_of
+from goniosim.cluster.shard import array_list, parse_shard
+from goniosim.cluster.standing import Standing, State, standing_of
+from goniosim.cluster.tracing import error_path, run_shard
+
+__all__ = [
+    "Division",
+    "ShardPlan",
+    "Standing",
+    "State",
+    "Task",
+    "array_list",
+    "error_path",
+    "merge",
+    "parse_shard",
+    "plan_of",
+    "run_shard",
+    "standing_of",
+]

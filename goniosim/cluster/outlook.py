@@ -3,13 +3,13 @@
 import math
 from dataclasses import dataclass
 
-from ..cores import available_cores
-from ..engine import memory_needed, piece_rays
-from ..engine.pieces import pieces_of, start
-from ..engine.plan import make_plan
-from ..report.simulation.forecast import file_size, forecasts
-from .division import Division
-from .plan_file import ShardPlan
+from goniosim.cores import available_cores
+from goniosim.engine import memory_needed, piece_rays
+from goniosim.engine.pieces import pieces_of, start
+from goniosim.engine.plan import make_plan
+from goniosim.report.simulation.forecast import file_size, forecasts
+from goniosim.cluster.division import Division
+from goniosim.cluster.plan_file import ShardPlan
 
 # Of its time a shard fills about this share: predictions are of this machine, and others are slower.
 FILL = 0.6

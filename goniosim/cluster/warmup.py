@@ -5,9 +5,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from .._jit.folder import CACHE_FOLDER, notices
-from ..errors import RefusalError
-from ..parts import turn
+from goniosim._jit.folder import CACHE_FOLDER, notices
+from goniosim.errors import RefusalError
+from goniosim.parts import turn
 
 # Seconds that another process may take to compile everything on a slow and busy machine.
 PATIENCE = 600.0
@@ -72,7 +72,7 @@ def of_all_estimators():
     -------
     list of goniosim.scene.Scene
     """
-    from ..scene import example, parse_scene
+    from goniosim.scene import example, parse_scene
 
     # Independent paths are everywhere, in the energy balance.
     asked = {"plastic": ("auto", "split"), "metal": ("auto",), "quickstart": ("auto",), "slab": ("auto",)}
@@ -90,7 +90,7 @@ def _kernels():
 
 
 def _simulate(scenes):
-    from ..engine import simulate
+    from goniosim.engine import simulate
 
     # What follows from the numbers in a scene is no matter of compilation.
     for scene in {_kind(scene): scene for scene in scenes}.values():
@@ -98,7 +98,7 @@ def _simulate(scenes):
 
 
 def _kind(scene):
-    from ..engine import estimators_of
+    from goniosim.engine import estimators_of
 
     interfaces = tuple((each.type, getattr(each, "alpha", None) == 0.0) for each in scene.material.interfaces)
     return interfaces, scene.simulation.orders is None, *estimators_of(scene)
@@ -106,7 +106,7 @@ def _kind(scene):
 
 def _tiny(scene):
     """The scene with as little to do as runs the same kernels."""
-    from ..engine.rounds import FEWEST_PATHS
+    from goniosim.engine.rounds import FEWEST_PATHS
 
     asked = scene.simulation
     rays = {"rays": min(asked.most_rays, FEWEST_PATHS), "target": None, "max_rays": None, "max_time": None}

@@ -1,9 +1,9 @@
 """What a plan of shards, and the state that they are in, look like as text."""
 
-from ..report import text
-from ..report.simulation.forecast import effects_text
-from .shard import array_list
-from .status import Stage
+from goniosim.report import text
+from goniosim.report.simulation.forecast import effects_text
+from goniosim.cluster.shard import array_list
+from goniosim.cluster.status import Stage
 
 # Errors of shards that are shown: the others are in their files.
 MOST_SHOWN = 10

@@ -6,6 +6,7 @@ from goniosim.store.datatree import to_datatree
 from goniosim.store.keeping import Standing, look_at, refuse_newer
 from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_be_models_file, open_models
 from goniosim.store.output import Reservation, reserve_output
+from goniosim.store.portion import Portion, read_portion, write_portion
 from goniosim.store.reader import open_result, read_header, read_scene, read_state
 from goniosim.store.resuming import keeper, state_left
 from goniosim.store.saving import write_result
@@ -14,6 +15,7 @@ from goniosim.store.size import predicted_size
 __all__ = [
     "ModelsFile",
     "ModelsWriter",
+    "Portion",
     "Reservation",
     "Standing",
     "hdf5_version",
@@ -25,11 +27,13 @@ __all__ = [
     "open_result",
     "predicted_size",
     "read_header",
+    "read_portion",
     "read_scene",
     "read_state",
     "refuse_newer",
     "reserve_output",
     "state_left",
     "to_datatree",
+    "write_portion",
     "write_result",
 ]

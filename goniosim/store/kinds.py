@@ -1,4 +1,4 @@
-"""The two kinds of file that goniosim writes, and how each of them calls itself."""
+"""The kinds of file that goniosim writes, and how each of them calls itself."""
 
 from dataclasses import dataclass
 
@@ -50,4 +50,12 @@ MODELS = Kind(
     writer="name a models.h5 that a comparison wrote",
     remedy="restore it from a copy or compare again",
 )
-KINDS = (RESULT, MODELS)
+PORTION = Kind(
+    name="portion",
+    filetype="goniosim-portion",
+    schema_version="1.0",
+    what="a portion of a simulation",
+    writer="name a file that a shard wrote",
+    remedy="run its shard again",
+)
+KINDS = (RESULT, MODELS, PORTION)

@@ -19,7 +19,7 @@ from goniosim.errors import (
     UnusableResultError,
 )
 from goniosim.store import access, checksums, legacy, seal
-from goniosim.store.kinds import KINDS, MODELS, RESULT, Kind
+from goniosim.store.kinds import KINDS, MODELS, PORTION, RESULT, Kind
 from goniosim.store.manifest import Manifest, NoManifest
 from goniosim.writing import StrPath, printable
 
@@ -274,6 +274,10 @@ def _another(found: Kind | None, head: bytes, path: StrPath, kind: Kind) -> Goni
         return UnusableResultError(
             f"{path}: holds integrated models and no simulation; {RESULT.writer} "
             "(`goniosim info`, `goniosim plot` and goniosim.store.open_models take this one)"
+        )
+    if kind is RESULT and found is PORTION:
+        return UnusableResultError(
+            f"{path}: holds a portion of a simulation; join it with the others by `goniosim merge` on their folder"
         )
     if kind is RESULT and legacy.MARK.startswith(head):
         return DamagedFileError(f"{path}: is cut off after {len(head)} bytes; {kind.remedy}")

@@ -10,7 +10,7 @@ from typing import Self
 
 from goniosim.errors import OutputError
 from goniosim.parts import Part, remove_dead, turn
-from goniosim.store.kinds import RESULT
+from goniosim.store.kinds import RESULT, Kind
 from goniosim.store.opening import kind_of
 from goniosim.writing import NO_ROOM, StrPath, explained, remedy
 
@@ -28,6 +28,8 @@ class Reservation:
         Where the file will stand.
     shown : path-like
         What the user calls it.
+    kind : goniosim.store.kinds.Kind
+        Of the file; only one of its kind is replaced.
 
     Raises
     ------
@@ -35,8 +37,9 @@ class Reservation:
         If the folder takes no new file.
     """
 
-    def __init__(self, target: Path, shown: StrPath) -> None:
+    def __init__(self, target: Path, shown: StrPath, kind: Kind = RESULT) -> None:
         self._target = target
+        self._kind = kind
         self._shown = shown
         self._part = Part(target)
 
@@ -87,7 +90,7 @@ class Reservation:
         with explained(self._shown):
             _write(self._part.descriptor, parts)
         with turn(self._target.parent):
-            _refuse_to_destroy(self._target, self._shown)
+            _refuse_to_destroy(self._target, self._shown, self._kind)
             check()
             with explained(self._shown):
                 self._part.move(self._target)
@@ -104,16 +107,17 @@ class Reservation:
         self._part.remove()
 
 
-def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
+def reserve_output(path: StrPath, size_bytes: int, kind: Kind = RESULT) -> Reservation:
     """Make sure, before a long computation, that its result can be written.
 
     Parameters
     ----------
     path : path-like
-        Output file. An earlier result may stand there, but nothing else.
+        Output file. An earlier one of its kind may stand there, but nothing else.
     size_bytes : int
         Predicted size, see `predicted_size`. What killed runs on this output left behind makes room first;
         not for a size of 0, with which many places can be tried at little cost.
+    kind : goniosim.store.kinds.Kind
 
     Returns
     -------
@@ -131,14 +135,14 @@ def reserve_output(path: StrPath, size_bytes: int) -> Reservation:
     with explained(path):
         if target.is_symlink():
             raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
-        _refuse_to_destroy(target, path)
+        _refuse_to_destroy(target, path, kind)
     if not target.parent.is_dir():
         what = "is not a folder" if target.parent.exists() else "does not exist"
         raise OutputError(f"{path}: the folder {target.parent} {what}; create it, or choose another place")
     if size_bytes:
         remove_dead([target])
     try:
-        reservation = Reservation(target, path)
+        reservation = Reservation(target, path, kind)
     except OSError as error:
         raise OutputError(
             f"{path}: the folder {target.parent} takes no new file: {error.strerror}; {remedy(error)}"
@@ -186,12 +190,12 @@ def rescue(parts: Sequence[Buffer], path: StrPath) -> str:
     return f"the result was saved as {name} instead"
 
 
-def _refuse_to_destroy(target: Path, shown: StrPath) -> None:
+def _refuse_to_destroy(target: Path, shown: StrPath, kind: Kind) -> None:
     if target.is_dir():
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
-    if target.exists() and kind_of(target)[0] is not RESULT:
+    if target.exists() and kind_of(target)[0] is not kind:
         raise OutputError(
-            f"{shown}: exists and is not a goniosim result, so it is not overwritten; choose another name or remove it"
+            f"{shown}: exists and is not {kind.what}, so it is not overwritten; choose another name or remove it"
         )
 
 

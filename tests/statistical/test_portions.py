@@ -1,14 +1,11 @@
 """A simulation in portions, joined, is the simulation in one go: to the same bits, however it was cut."""
 
 import itertools
-import threading
 
-import numpy as np
 import pytest
 
 from goniosim.engine import join_portions, piece_rays, simulate, trace_portion
-from goniosim.engine.packing import pack, unpack
-from goniosim.errors import StoppedError, UnusableResultError
+from goniosim.engine.packing import pack
 from goniosim.scene import with_arguments
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 

@@ -46,10 +46,11 @@ MAY_IMPORT = {
     "store": {"scene"},
     "compare": COMPILED | {"optics", "slices", "integration", "scene", "models", "store"},
     "report": COMPILED | {"slices", "integration", "scene", "models", "engine", "store", "compare"},
+    "cluster": COMPILED | {"scene", "engine", "store", "report"},
     "api": {"scene", "engine", "store", "report"},
     # The public face, which nobody inside imports, and the roof.
     "goniosim": {"scene", "models", "store", "compare", "api"},
-    "goniosim_cli": COMPILED | {"goniosim", "scene", "models", "engine", "store", "compare", "report"},
+    "goniosim_cli": COMPILED | {"goniosim", "scene", "models", "engine", "store", "compare", "report", "cluster"},
 }
 
 # Methods of a result that hand on to rooms above, so that people find on it what they want to do with it. Imported

@@ -182,7 +182,7 @@ def test_memory_that_runs_out_all_the_same_is_explained(monkeypatch):
     def greedy(*_):
         raise MemoryError("Unable to allocate 3 GiB")
 
-    monkeypatch.setattr(driver, "_integrate_direct", greedy)
+    monkeypatch.setattr(driver, "integrate_direct", greedy)
     with pytest.raises(ResourceError, match="memory ran out"):
         simulate(make_scene(PLASTIC, [30.0], rows=2, columns=2))
 

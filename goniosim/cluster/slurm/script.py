@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from ...errors import OutputError, RefusalError
+from goniosim.errors import OutputError, RefusalError
 
 SHARDS, MERGE = "shards.sbatch", "merge.sbatch"
 # Where a plan's folder has the output of jobs, and the result.

@@ -1,0 +1,136 @@
+"""All shards of a folder joined: to the results of one plain run."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from goniosim.cluster.division import Division, Task
+from goniosim.cluster.plan_file import ShardPlan
+from goniosim.cluster.shard import array_list
+from goniosim.cluster.standing import State, standing_of
+from goniosim.engine import join_portions
+from goniosim.errors import OutputError, UnusableResultError
+from goniosim.result import Result
+from goniosim.scene import with_arguments
+from goniosim.store import open_result, read_portion, write_result
+from goniosim.writing import StrPath, make_folder
+
+_WORDS = {State.MISSING: "missing", State.PARTIAL: "not finished", State.DAMAGED: "damaged"}
+
+
+def merge(
+    folder: StrPath,
+    out: StrPath,
+    *,
+    allow_missing: bool = False,
+    overwrite: bool = False,
+    threads: int | None = None,
+    note: Callable[[str], object] = lambda _: None,
+) -> Iterator[tuple[Result, Path]]:
+    """Join all shards of a folder.
+
+    Everything is looked at before anything is written.
+
+    Parameters
+    ----------
+    folder : path-like
+        With a plan and what its shards have traced.
+    out : path-like
+        Result file, or the folder of a study's files.
+    allow_missing : bool
+        Join what is there; the results say what is missing, and have the status ``partial``.
+    overwrite : bool
+        Replace results of other scenes, or with more rays.
+    threads : int, optional
+    note : callable
+        Called with a line on what is left out.
+
+    Yields
+    ------
+    Result, Path
+        Of each material, once its file stands.
+
+    Raises
+    ------
+    ForeignFileError
+        If there is no plan in the folder.
+    UnusableResultError
+        If shards are missing, not finished, damaged, there twice, or of another version of goniosim; it names those to
+        run again.
+    OutputError
+        If a file cannot be written, or something else stands in the place of a shard.
+    """
+    plan = ShardPlan.read(folder)
+    plan.require_version(folder)
+    tasks = Division(plan).all_tasks()
+    _refuse_others(folder, tasks)
+    lacking = _lacking(tasks, folder)
+    if lacking and not allow_missing:
+        raise _incomplete(folder, lacking)
+    for line in lacking.values():
+        note(f"left out: {line}" if not line.endswith("not finished") else f"used as far as it goes: {line}")
+    if plan.study is not None:
+        make_folder(out)
+    words = f"{len({task.shard for task in tasks})} shards"
+    if numbers := {task.shard for task in lacking}:
+        words += f", of which {array_list(list(numbers))} are missing or not finished"
+    for scene in plan.scenes:
+        mine = [task for task in tasks if task.scene is scene]
+        usable = [task for task in mine if "damaged" not in lacking.get(task, "") and task.path(folder).exists()]
+        if not usable:
+            note(f"left out: {scene.material.name}: nothing of it is there")
+            continue
+        path = Path(out) / f"{scene.material.name}.h5" if plan.study is not None else Path(out)
+        result = _joined(usable, folder, threads)
+        result.provenance["merged"] = words
+        write_result(result, path, overwrite=overwrite)
+        yield result, path
+
+
+def _joined(tasks: list[Task], folder: StrPath, threads: int | None) -> Result:
+    if tasks[0].is_result:
+        return open_result(tasks[0].path(folder))
+    scene = with_arguments(tasks[0].scene, {"threads": threads})
+    try:
+        result: Result = join_portions(scene, (read_portion(task.path(folder))[1] for task in tasks))
+    except UnusableResultError as error:
+        number = getattr(error, "number", None)
+        if number is None:
+            raise
+        task = tasks[number]
+        raise UnusableResultError(f"{task.path(folder)}: {error}; run its shard again: --array={task.shard}") from error
+    # As of a plain run that leaves the threads to the machine.
+    result.config_yaml = tasks[0].scene.to_yaml()
+    return result
+
+
+def _lacking(tasks: list[Task], folder: StrPath) -> dict[Task, str]:
+    """Tasks that are not done, with a line on each."""
+    found = {}
+    for task in tasks:
+        there = standing_of(task, folder, whole=True)
+        if there.state is not State.DONE:
+            found[task] = there.why or f"{task.path(folder)}: {_WORDS[there.state]}"
+    return found
+
+
+def _incomplete(folder: StrPath, lacking: dict[Task, str]) -> UnusableResultError:
+    shards = array_list([task.shard for task in lacking])
+    lines = list(lacking.values())
+    shown = [*lines[:20], *([f"and {len(lines) - 20} more"] if len(lines) > 20 else [])]
+    count = f"{len(lines)} of its files are" if len(lines) > 1 else "one of its files is"
+    return UnusableResultError(
+        f"{folder}: {count} missing, not finished or damaged, and nothing was written; run these shards again: "
+        f"--array={shards} (or merge what is there with --allow-missing)",
+        shown,
+    )
+
+
+def _refuse_others(folder: StrPath, tasks: list[Task]) -> None:
+    """What belongs to another division of the same work would count twice."""
+    expected = {task.name for task in tasks}
+    others = sorted(path.name for path in Path(folder).glob("*.shard-*-of-*.h5") if path.name not in expected)
+    if others:
+        more = f" and {len(others) - 3} more" if len(others) > 3 else ""
+        raise OutputError(
+            f"{folder}: {', '.join(others[:3])}{more}: of another division of the work; remove what is not to be merged"
+        )
