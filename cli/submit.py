@@ -36,7 +36,9 @@ def submit(config, output, slurm, walltime, shards, cpus, overrides, sbatch_opti
         raise click.UsageError("to which batch system? Say --slurm")
     there = plan_in(config) if config != "-" else None
     if there is not None:
-        _refuse_changes(config, output, {**asked, "walltime": walltime, "shards": shards, "cpus": cpus, "set": overrides})
+        _refuse_changes(
+            config, output, {**asked, "walltime": walltime, "shards": shards, "cpus": cpus, "set": overrides}
+        )
         folder = Path(config)
     else:
         if output is None:
@@ -48,7 +50,7 @@ def submit(config, output, slurm, walltime, shards, cpus, overrides, sbatch_opti
             write(outlook, folder, sbatch_options)
             there, sbatch_options = outlook.plan, ()
         else:
-            _refuse_changes(output, None, {"walltime": walltime, "cpus": cpus})
+            _refuse_changes(output, {"walltime": walltime, "cpus": cpus})
             there.require_same(there.make(described.scenes, described.study, shards or there.shards), folder)
     there.require_version(folder)
     found = look(folder)
@@ -70,12 +72,10 @@ def _quoted(path):
     return shlex.quote(str(path))
 
 
-def _refuse_changes(folder, output, given):
+def _refuse_changes(folder, given):
     names = [f"--{name.replace('_', '-')}" for name, value in given.items() if value]
-    if output is not None:
-        names.append("-o")
     if names:
         raise click.UsageError(
-            f"{folder} has its plan already, without {', '.join(names)}: "
+            f"{folder} has its plan already, which takes no {', '.join(names)}: "
             "edit its scripts, or give options of sbatch behind --, or plan anew into another folder"
         )

@@ -3,13 +3,13 @@
 import math
 from dataclasses import dataclass
 
+from goniosim.cluster.division import Division
+from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cores import available_cores
 from goniosim.engine import memory_needed, piece_rays
 from goniosim.engine.pieces import pieces_of, start
 from goniosim.engine.plan import make_plan
 from goniosim.report.simulation.forecast import file_size, forecasts
-from goniosim.cluster.division import Division
-from goniosim.cluster.plan_file import ShardPlan
 
 # Of its time a shard fills about this share: predictions are of this machine, and others are slower.
 FILL = 0.6
@@ -76,9 +76,7 @@ def expect(scenes, cpus):
         traced = None if one.seconds is None or one.seconds == asked.max_time else one.seconds * here / cpus
         seconds = min(filter(None, (traced, asked.max_time)), default=None)
         rate = one.rays_per_second * cpus / here
-        found.append(
-            Expected(scene, rate, seconds, memory.peak + memory.checkpoint, file_size(scene), one.shortage)
-        )
+        found.append(Expected(scene, rate, seconds, memory.peak + memory.checkpoint, file_size(scene), one.shortage))
     return found
 
 

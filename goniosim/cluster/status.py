@@ -5,11 +5,11 @@ from enum import Enum
 from functools import cache
 from pathlib import Path
 
-from goniosim.engine import piece_rays
 from goniosim.cluster.division import Division
 from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.standing import State, standing_of
 from goniosim.cluster.tracing import error_path
+from goniosim.engine import piece_rays
 
 # Of what a shard says of its error.
 _LONGEST = 2000

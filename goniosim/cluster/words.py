@@ -1,9 +1,9 @@
 """What a plan of shards, and the state that they are in, look like as text."""
 
-from goniosim.report import text
-from goniosim.report.simulation.forecast import effects_text
 from goniosim.cluster.shard import array_list
 from goniosim.cluster.status import Stage
+from goniosim.report import text
+from goniosim.report.simulation.forecast import effects_text
 
 # Errors of shards that are shown: the others are in their files.
 MOST_SHOWN = 10
@@ -41,11 +41,18 @@ def outlook_text(outlook):
         f"  time     {text.duration(outlook.seconds)} in all, one task after the other{_unknown(expected)}",
         f"  memory   at most {text.size(outlook.n_bytes)} for each task",
         f"  disk     at most {text.size(left)} for shards and {text.size(results)} for results",
-        f"  shards   {plan.shards}, each {text.duration(outlook.each)}; a task may take {text.duration(outlook.walltime)}",
+        f"  shards   {plan.shards}, each about {text.duration(outlook.each)} of the {text.duration(outlook.walltime)} "
+        "that a task may take",
     ]
     if outlook.each > outlook.walltime:
-        lines.append("  Warning: a shard takes longer than a task may: tasks will stop and queue again until all is done")
-    lines += [f"  Warning: memory: {one.scene.material.name} does not fit here: {one.shortage}" for one in expected if one.shortage]
+        lines.append(
+            "  Warning: a shard takes longer than a task may: tasks will stop and queue again until all is done"
+        )
+    lines += [
+        f"  Warning: memory: {one.scene.material.name} does not fit here: {one.shortage}"
+        for one in expected
+        if one.shortage
+    ]
     return "\n".join(lines)
 
 

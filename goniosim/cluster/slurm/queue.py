@@ -4,9 +4,9 @@ import shlex
 import subprocess
 from pathlib import Path
 
-from goniosim.errors import RefusalError
 from goniosim.cluster.shard import array_list
 from goniosim.cluster.slurm.script import MERGE, SHARDS
+from goniosim.errors import RefusalError
 
 
 def commands(folder):
