@@ -13,7 +13,7 @@ PAPER := out/paper
 # Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.
 WORKERS := -n auto --maxprocesses 4 --dist loadfile
 
-.PHONY: demo install lint test test-all test-cluster bench headline accuracy honesty paper paper-report clean
+.PHONY: demo install lint test test-all test-cluster bench headline accuracy cluster-overhead honesty paper paper-report clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -56,6 +56,10 @@ headline: $(STAMP)
 # docs/accuracy_and_time.md, its tables and pictures; some minutes, on an idle machine.
 accuracy: $(STAMP)
 	$(BIN)/python -m benchmarks.accuracy_and_time
+
+# The measured part of docs/cluster.md; some minutes, on an idle machine.
+cluster-overhead: $(STAMP)
+	$(BIN)/python -m benchmarks.cluster
 
 # docs/honesty.txt: the scatter over 40 seeds against what error bars state; half an hour.
 honesty: $(STAMP)

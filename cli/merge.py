@@ -12,11 +12,12 @@ from .policy import debug_option, say
     "-o", "--output", type=PATH, required=True, metavar="OUT", help="Result file, or the folder of a study's files."
 )
 @click.option("--allow-missing", is_flag=True, help="Join what is there; the results say what is missing.")
+@click.option("--only", multiple=True, metavar="MATERIAL", help="Only this material; may be repeated.")
 @click.option("--threads", type=Count(), metavar="N", help="Threads to use.")
 @click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @debug_option
-def merge(folder, output, allow_missing, threads, overwrite, quiet):
+def merge(folder, output, allow_missing, only, threads, overwrite, quiet):
     """Join the shards of a folder to what one run would have yielded.
 
     FOLDER is that of `goniosim simulate --shard`. The numbers are the same to the last bit, whatever the number of
@@ -36,9 +37,9 @@ def merge(folder, output, allow_missing, threads, overwrite, quiet):
 
     progress = make_progress(None, quiet)
     with tidied_up():
-        given = {"allow_missing": allow_missing, "overwrite": overwrite, "threads": threads, "note": progress.note}
+        given = {"allow_missing": allow_missing, "overwrite": overwrite, "only": only, "threads": threads}
         rows, last = [], None
-        for result, path in join(folder, output, **given):
+        for result, path in join(folder, output, note=progress.note, **given):
             last = summary(result, path)
             rows.append(study.row(result, path))
     if not quiet and rows:

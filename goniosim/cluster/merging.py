@@ -1,6 +1,6 @@
 """All shards of a folder joined: to the results of one plain run."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from goniosim.cluster.division import Division, Task
@@ -8,7 +8,7 @@ from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.shard import array_list
 from goniosim.cluster.standing import State, standing_of
 from goniosim.engine import join_portions
-from goniosim.errors import OutputError, UnusableResultError
+from goniosim.errors import ConfigError, OutputError, UnusableResultError
 from goniosim.result import Result
 from goniosim.scene import with_arguments
 from goniosim.store import open_result, read_portion, write_result
@@ -23,6 +23,7 @@ def merge(
     *,
     allow_missing: bool = False,
     overwrite: bool = False,
+    only: Collection[str] = (),
     threads: int | None = None,
     note: Callable[[str], object] = lambda _: None,
 ) -> Iterator[tuple[Result, Path]]:
@@ -40,6 +41,8 @@ def merge(
         Join what is there; the results say what is missing, and have the status ``partial``.
     overwrite : bool
         Replace results of other scenes, or with more rays.
+    only : collection of str
+        Names of materials, so that several processes can share the work; all without.
     threads : int, optional
     note : callable
         Called with a line on what is left out.
@@ -61,8 +64,11 @@ def merge(
     """
     plan = ShardPlan.read(folder)
     plan.require_version(folder)
+    if unknown := set(only) - {scene.material.name for scene in plan.scenes}:
+        raise ConfigError(f"{folder}: has no material {sorted(unknown)[0]}")
     tasks = Division(plan).all_tasks()
     _refuse_others(folder, tasks)
+    tasks = [task for task in tasks if not only or task.scene.material.name in only]
     lacking = _lacking(tasks, folder)
     if lacking and not allow_missing:
         raise _incomplete(folder, lacking)
@@ -76,6 +82,8 @@ def merge(
     for scene in plan.scenes:
         mine = [task for task in tasks if task.scene is scene]
         usable = [task for task in mine if "damaged" not in lacking.get(task, "") and task.path(folder).exists()]
+        if not mine:
+            continue
         if not usable:
             note(f"left out: {scene.material.name}: nothing of it is there")
             continue

@@ -18,7 +18,7 @@ from .plan import make_plan
 from .replicated import ReplicatedRun
 from .rounds import chunks
 from .runs import in_flight
-from .schedule import AUDIT_RAYS, MOST_LEDGERS, Schedule
+from .schedule import AUDIT_RAYS, MOST_LEDGERS, MOST_SECTIONS, Schedule
 from .sorting import LANES
 from .tally import record_length
 from .unit import BATCH, PARTS, queue_capacity
@@ -165,8 +165,10 @@ def _of_walk(plan, rays, threads):
     schedule = Schedule(directions, rays)
     threads = min(threads, len(schedule))
     ledgers = min(PARTS * schedule.rounds, 2 * MOST_LEDGERS)
+    # Sections of several work units have tallies of their own.
+    tallies = 2 if schedule.rounds > MOST_SECTIONS else 1
     return {
-        "tallies": directions * tally,
+        "tallies": tallies * directions * tally,
         "threads": in_flight(AnalogRun.waiting, threads, len(schedule)) * tally + threads * _THREAD,
         "queues": threads * _queues(plan) + 2 * directions * _thresholds(plan),
         # The balance of one direction needs three copies of its ledgers.
