@@ -116,7 +116,7 @@ class HintingGroup(click.Group):
             homes = [name for name, command in self.commands.items() if option in _options(command)]
             if homes:
                 place = "stands behind" if error.ctx.command is self else "belongs to"
-                return f"{option} {place} goniosim {' and '.join(homes)}"
+                return f"{option} {place} goniosim {' and '.join(filter(None, [', '.join(homes[:-1]), homes[-1]]))}"
         return None
 
 

@@ -37,3 +37,5 @@ def plan(config, output, walltime, shards, cpus, overrides, sbatch_options, **as
     if output:
         lines = "\n".join(f"  {line}" for line in commands(Path(output).absolute()))
         say(f"\nThe plan and its scripts are in {output}. Next:\n\n{lines}")
+    else:
+        say("Nothing is written; with -o DIR, the plan and scripts for Slurm are.")

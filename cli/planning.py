@@ -29,7 +29,17 @@ OPTIONS = (
     click.option("--seed", type=Count(), metavar="S", help="Seed of the random numbers."),
     set_option,
 )
-sbatch_options = click.argument("sbatch_options", nargs=-1, type=click.UNPROCESSED, metavar="[-- SBATCH_OPTIONS]")
+
+
+def _passed_on(ctx, param, words):
+    if words and not words[0].startswith("-"):
+        raise click.UsageError(f"Got unexpected extra argument ({words[0]}); options of sbatch stand behind --")
+    return words
+
+
+sbatch_options = click.argument(
+    "sbatch_options", nargs=-1, type=click.UNPROCESSED, callback=_passed_on, metavar="[-- SBATCH_OPTIONS]"
+)
 
 
 def planning_options(command):

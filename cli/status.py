@@ -25,10 +25,13 @@ def status(folder, as_json):
     import json
 
     from goniosim.cluster import words
+    from goniosim.cluster.slurm import results_of
     from goniosim.cluster.status import look
+    from goniosim.store import open_result
 
     found = look(folder)
+    results = {path: open_result(path) for path in results_of(found.plan, folder) if path.exists()}
     if as_json:
-        click.echo(json.dumps(words.status_as_data(found), indent=1, allow_nan=False))
-        return
-    say(words.status_text(found, folder))
+        click.echo(json.dumps(words.status_as_data(found, results), indent=1, allow_nan=False))
+    else:
+        say(words.status_text(found, results))

@@ -36,9 +36,8 @@ def submit(config, output, slurm, walltime, shards, cpus, overrides, sbatch_opti
         raise click.UsageError("to which batch system? Say --slurm")
     there = plan_in(config) if config != "-" else None
     if there is not None:
-        _refuse_changes(
-            config, output, {**asked, "walltime": walltime, "shards": shards, "cpus": cpus, "set": overrides}
-        )
+        given = {"output": output, "walltime": walltime, "shards": shards, "cpus": cpus, "set": overrides}
+        _refuse_changes(config, {**asked, **given})
         folder = Path(config)
     else:
         if output is None:

@@ -19,8 +19,8 @@ def warmup(config):
     if that is set, or in the home folder.
 
     \b
-    Examples: goniosim warmup
-              NUMBA_CACHE_DIR=/tmp/mine goniosim warmup study.yaml
+    Examples: goniosim warmup study.yaml
+              NUMBA_CACHE_DIR=/tmp/mine goniosim warmup
     """  # noqa: D301
     from goniosim._jit.folder import notices
     from goniosim.cluster.warmup import keep_warm, of_all_estimators

@@ -9,7 +9,7 @@ from goniosim.cores import available_cores
 from goniosim.engine import memory_needed, piece_rays
 from goniosim.engine.pieces import pieces_of, start
 from goniosim.engine.plan import make_plan
-from goniosim.report.simulation.forecast import file_size, forecasts
+from goniosim.report.simulation.forecast import file_size, forecasts, size_of_batches
 
 # Of its time a shard fills about this share: predictions are of this machine, and others are slower.
 FILL = 0.6
@@ -17,6 +17,8 @@ FILL = 0.6
 START_UP, WORTH = 2.0, 30.0
 # Slurm's usual limit on the numbers of an array is 1000.
 MOST = 1000
+# Measured: bytes of a file of a shard, and of each sum in it, besides what is in cells.
+_FILE, _RECORD = 16_000, 8_000
 # Tasks of fewer processors find their place sooner.
 MOST_CPUS = 8
 
@@ -165,15 +167,16 @@ def _weights(expected):
 
 def _left(plan):
     """Bytes of the files of all shards, at most."""
-    pieces, record, total = {}, {}, 0.0
+    pieces, sums, total = {}, {}, 0.0
     for task in Division(plan).all_tasks():
         if task.is_result:
             continue
         scene, name = task.scene, task.scene.material.name
         if name not in pieces:
             pieces[name] = pieces_of(start(make_plan(scene), scene.simulation)[1], scene.simulation.rays)
-            record[name] = memory_needed(scene).tallies / len(scene.incident.theta_deg)
-        total += _records(pieces[name][task.first : task.end]) * record[name]
+            of_all = memory_needed(scene).tallies + size_of_batches(scene)
+            sums[name] = of_all / len(scene.incident.theta_deg) + _RECORD
+        total += _records(pieces[name][task.first : task.end]) * sums[name] + _FILE
     return int(total)
 
 

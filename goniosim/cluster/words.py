@@ -3,6 +3,7 @@
 from goniosim.cluster.shard import array_list
 from goniosim.cluster.status import Stage
 from goniosim.report import text
+from goniosim.report.simulation import study
 from goniosim.report.simulation.forecast import effects_text
 
 # Errors of shards that are shown: the others are in their files.
@@ -41,8 +42,8 @@ def outlook_text(outlook):
         f"  time     {text.duration(outlook.seconds)} in all, one task after the other{_unknown(expected)}",
         f"  memory   at most {text.size(outlook.n_bytes)} for each task",
         f"  disk     at most {text.size(left)} for shards and {text.size(results)} for results",
-        f"  shards   {plan.shards}, each about {text.duration(outlook.each)} of the {text.duration(outlook.walltime)} "
-        "that a task may take",
+        f"  shards   {plan.shards}, each about {text.duration(outlook.each)}; "
+        f"a task may take {text.duration(outlook.walltime)}",
     ]
     if outlook.each > outlook.walltime:
         lines.append(
@@ -68,13 +69,14 @@ def _unknown(expected):
     return f" (of {number} that stop at a target nobody knows: taken for the mean of the others)" if number else ""
 
 
-def status_text(status, folder):
+def status_text(status, results):
     """Tell how far shards are.
 
     Parameters
     ----------
     status : goniosim.cluster.status.Status
-    folder : path-like
+    results : dict of Path to goniosim.result.Result
+        What is merged.
 
     Returns
     -------
@@ -92,15 +94,19 @@ def status_text(status, folder):
     if total:
         lines.append(f"  rays     {text.count(done)} of {text.count(total)} ({100.0 * done / total:.3g} %)")
     lines.append(f"  left     {_left(status)}")
+    if results:
+        rows = [study.row(result, path) for path, result in results.items()]
+        lines += ["", f"Merged, in {next(iter(results)).parent}", study.study_text(rows)]
     return "\n".join(lines)
 
 
-def status_as_data(status):
+def status_as_data(status, results):
     """What `status_text` tells, for programs.
 
     Parameters
     ----------
     status : goniosim.cluster.status.Status
+    results : dict of Path to goniosim.result.Result
 
     Returns
     -------
@@ -115,6 +121,10 @@ def status_as_data(status):
         "rays_done": sum(shard.done_rays for shard in status.shards),
         "rays_planned": sum(shard.total_rays for shard in status.shards),
         "seconds_left": status.seconds_left(status.shards),
+        "results": {
+            result.name: {"file": str(path), "status": result.status, "noise": study.noise(result)}
+            for path, result in results.items()
+        },
     }
 
 

@@ -28,7 +28,7 @@ from goniosim_cli.main import main
         ("simulate scene.yaml --gpu", "No such option '--gpu': not available: rays are traced by the processor"),
         ("simulate --config scene.yaml", "'--config': name the file behind the command, without an option"),
         ("simulate scene.yaml --version", "No such option '--version': --version stands before the command"),
-        ("--rays 100 simulate scene.yaml", "No such option '--rays': --rays stands behind goniosim simulate and check"),
+        ("--rays 100 simulate scene.yaml", "--rays stands behind goniosim simulate, check, plan and submit"),
         ("plot small.h5 --theta 1,5", "Invalid value for '--theta': '1,5' has a comma: write 1.5"),
         ("simulate scene.yaml --rays 1,5e6", "Invalid value for '--rays': '1,5e6' has a comma: write 1.5e6"),
         ("simulate scene.yaml --rays 1,000,000", "'1,000,000' has a comma: write 1000000"),

@@ -58,7 +58,7 @@ def _sbatch(folder, *arguments):
     except FileNotFoundError:
         raise RefusalError(
             "there is no sbatch here: run this where jobs are submitted, or without Slurm trace each shard by "
-            f"goniosim simulate {shlex.quote(str(folder))} --shard 1/N, and so on"
+            f"goniosim simulate {shlex.quote(str(folder))} --shard 1, and so on"
         ) from None
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if line.strip()] or [f"exit code {done.returncode}"]

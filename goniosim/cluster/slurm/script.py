@@ -37,7 +37,7 @@ class Jobs:
         Memory that a task takes.
     walltime : float
         Seconds that a task may take.
-    options : sequence of str
+    options : tuple of str
         For both jobs, as `sbatch` takes them.
     """
 
@@ -53,8 +53,12 @@ class Jobs:
 
 def result_of(plan, folder):
     """Where the merged result of a plan in a folder goes: a file of a scene, a folder of a study."""
-    home = Path(folder) / RESULTS
-    return home if plan.study is not None else home / f"{plan.scenes[0].material.name}.h5"
+    return Path(folder) / RESULTS if plan.study is not None else results_of(plan, folder)[0]
+
+
+def results_of(plan, folder):
+    """Where the merged results of all materials of a plan go, list of Path."""
+    return [Path(folder) / RESULTS / f"{scene.material.name}.h5" for scene in plan.scenes]
 
 
 def scripts(jobs):
@@ -87,7 +91,7 @@ def scripts(jobs):
         "notice": str(min(NOTICE, 60 * minutes // SHARE)),
         # In names of logs, % begins the number of a task.
         "logs": _quoted(str(folder / LOGS).replace("%", "%%")),
-        "options": "\n".join(f"#SBATCH {_quoted(option)}" for option in jobs.options),
+        "options": " ".join(["#SBATCH", *map(_quoted, jobs.options)]) if jobs.options else "",
         "folder": _quoted(folder),
         "out": _quoted(out),
         "goniosim": _quoted(_program()),
