@@ -11,7 +11,7 @@ COMMANDS = {
     "check": "validate lint verify test predict estimate dryrun",
     "cost": "price prices pricelist accuracy budget",
     "plan": "schedule array shards",
-    "submit": "sbatch slurm batch launch",
+    "submit": "sbatch qsub slurm batch launch",
     "status": "stat progress queue squeue jobs",
     "merge": "join reduce combine concatenate gather",
     "warmup": "compile precompile warm cache",
@@ -52,6 +52,9 @@ OPTIONS = {
 EXPLAINED = {
     **dict.fromkeys(("gpu", "cuda", "device"), "not available: rays are traced by the processor"),
     **dict.fromkeys(("resume", "continue"), "a study goes on where it stopped: run the same command again"),
+    **dict.fromkeys(
+        ("partition", "account", "qos", "mem", "constraint"), "options of sbatch stand behind --: -- --partition=long"
+    ),
     **dict.fromkeys(("export", "convert"), "not available: results are HDF5 files, described in data_schema.md"),
     **dict.fromkeys(("config", "scene", "file", "input", "i"), "name the file behind the command, without an option"),
     "phi": "not available: layers look the same from every azimuth, and the light stands at phi = 0",

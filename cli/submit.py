@@ -11,7 +11,13 @@ from .policy import debug_option, say
 
 @click.command()
 @click.argument("config", type=PATH)
-@click.option("-o", "--output", type=PATH, metavar="DIR", help="Folder for the plan, its scripts and its shards.")
+@click.option(
+    "-o",
+    "--output",
+    type=PATH,
+    metavar="DIR",
+    help="Folder for the plan, its scripts and its shards [default: NAME.shards].",
+)
 @click.option("--slurm", is_flag=True, help="To Slurm, by sbatch.")
 @planning_options
 @sbatch_options
@@ -40,16 +46,15 @@ def submit(config, output, slurm, walltime, shards, cpus, overrides, sbatch_opti
         _refuse_changes(config, {**asked, **given})
         folder = Path(config)
     else:
-        if output is None:
-            raise click.UsageError("name a folder for the shards with -o")
-        folder, there = Path(output), plan_in(output)
         described = described_by(config, overrides, asked)
+        folder = Path(output or f"{described.study or described.scenes[0].material.name}.shards")
+        there = plan_in(folder)
         if there is None:
             outlook = look_ahead(described, walltime, shards, cpus)
             write(outlook, folder, sbatch_options)
             there, sbatch_options = outlook.plan, ()
         else:
-            _refuse_changes(output, {"walltime": walltime, "cpus": cpus})
+            _refuse_changes(folder, {"walltime": walltime, "cpus": cpus})
             there.require_same(there.make(described.scenes, described.study, shards or there.shards), folder)
     there.require_version(folder)
     found = look(folder)

@@ -26,6 +26,8 @@ from goniosim_cli.main import main
         ("compare small.h5 --model ww09", "No such option '--model': did you mean --models?"),
         ("plot small.h5 --models ww09", "No such option '--models': did you mean --model?"),
         ("simulate scene.yaml --gpu", "No such option '--gpu': not available: rays are traced by the processor"),
+        ("submit scene.yaml --partition=long", "options of sbatch stand behind --: -- --partition=long"),
+        ("qsub scene.yaml", "No such command 'qsub': did you mean goniosim submit?"),
         ("simulate --config scene.yaml", "'--config': name the file behind the command, without an option"),
         ("simulate scene.yaml --version", "No such option '--version': --version stands before the command"),
         ("--rays 100 simulate scene.yaml", "--rays stands behind goniosim simulate, check, plan and submit"),

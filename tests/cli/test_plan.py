@@ -1,20 +1,15 @@
-"""`goniosim plan`: what it predicts, into how many shards it cuts, and the scripts that it writes."""
+"""`goniosim plan`: what it predicts, into how many shards it cuts, and what it writes."""
 
-import re
 import shlex
 import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
 from goniosim.cluster import Division, ShardPlan, outlook, run_shard
-from goniosim.cluster.slurm import Jobs, scripts
 from goniosim.engine import piece_rays
 from goniosim.scene import parse_scene
 from small import SCENE
 
-ROOT = Path(outlook.__file__).resolve().parents[2]
 # A folder that no shell and no batch system takes without quotes.
 AWKWARD = 'it\'s "so" 100 %a #1 $HOME'
 
@@ -112,32 +107,18 @@ def test_shards_leave_no_more_than_is_predicted(tmp_path, estimator):
     assert held < outlook._left(plan) < 5 * held
 
 
-JOBS = Jobs("small", Path("/a/shards"), Path("/a/shards/results"), 16, 4, 10**9, 3600.0, ())
-
-
-def directives(text):
-    """What stands in the lines for sbatch."""
-    return dict(re.findall(r"^#SBATCH --([a-z-]+)=(.*)$", text, re.MULTILINE))
-
-
-def test_what_the_scripts_ask_for():
-    made = scripts(JOBS)
-    asked = directives(made["shards.sbatch"])
-    assert asked["array"] == "1-16" and asked["cpus-per-task"] == "4" and asked["time"] == "0-01:00:00"
-    assert asked["mem"] == "1145M" and asked["signal"] == "B:USR1@120" and asked["output"].endswith("/shard-%a.log")
-    assert "\n#SBATCH --requeue\n" in made["shards.sbatch"]
-    assert directives(made["merge.sbatch"])["kill-on-invalid-dep"] == "yes"
-    program = Path(sys.executable).with_name("goniosim")
-    assert f"\ngoniosim={program}\n" in made["shards.sbatch"]
-    assert made["merge.sbatch"].endswith(f"\nexec {program} merge /a/shards -o /a/shards/results\n")
-    assert "{{" not in "".join(made.values())
-
-
-@pytest.mark.parametrize(("walltime", "time", "notice"), [(1.0, "0-00:01:00", 15), (2e5, "2-07:34:00", 120)])
-def test_times_are_those_of_slurm(walltime, time, notice):
-    """In whole minutes; the notice comes in good time, also before a short one is over."""
-    asked = directives(scripts(Jobs(**{**vars(JOBS), "walltime": walltime}))["shards.sbatch"])
-    assert (asked["time"], asked["signal"]) == (time, f"B:USR1@{notice}")
+def test_the_folder_of_a_plan_stands_for_what_it_was_made_of(folder, goniosim, monkeypatch):
+    ShardPlan.make([parse_scene(SCENE)], None, 2).write("shards")
+    (folder / "scene.yaml").unlink()
+    assert goniosim("warmup", "shards")[0] == 0
+    monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "2")
+    assert "shard 2 of 2: " in goniosim("simulate", "shards", "--shard", "auto", "--threads", 1)[1]
+    assert goniosim("simulate", "shards", "--shard", "1/2", "-q")[0] == 0
+    assert goniosim("merge", "shards", "-o", "new/small.h5", "-q")[0] == 0
+    code, _, err = goniosim("simulate", "shards", "--shard", 1, "--rays", "5e3")
+    assert code == 3 and "shards: --rays 5000: what is planned cannot be changed" in err
+    code, _, err = goniosim("simulate", ".", "--shard", 1)
+    assert code == 5 and "plan.json is missing" in err
 
 
 @pytest.mark.parametrize("name", ["back\\slash", "line\nbreak"])
@@ -145,10 +126,3 @@ def test_a_folder_that_no_script_can_name_is_refused(folder, goniosim, name):
     code, _, err = goniosim("plan", "study.yaml", "-o", name)
     assert code == 4 and "cannot stand in a batch script" in err and err.count("\n") == 1
     assert not (folder / name).exists()
-
-
-def test_the_templates_of_the_repository_are_the_packaged_ones():
-    packaged = sorted((ROOT / "goniosim" / "cluster" / "slurm").glob("*.sbatch"))
-    assert len(packaged) == 2
-    for path in packaged:
-        assert (ROOT / "configs" / "cluster" / path.name).read_bytes() == path.read_bytes()

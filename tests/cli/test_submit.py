@@ -84,12 +84,13 @@ def test_what_is_planned_cannot_be_changed(folder, goniosim, sbatch):
 def test_without_a_batch_system(folder, goniosim, monkeypatch):
     code, _, err = goniosim("submit", "study.yaml", "-o", "shards")
     assert code == 2 and "Say --slurm" in err
-    assert goniosim("submit", "study.yaml", "--slurm")[0] == 2
     monkeypatch.setenv("PATH", str(folder))
     code, _, err = goniosim(*SUBMIT)
     assert code == 10 and err.count("\n") == 1
     assert "there is no sbatch here" in err and "--shard 1, and so on" in err
     assert ShardPlan.read("my shards").shards == 3
+    assert goniosim("submit", "study.yaml", "--slurm")[0] == 10
+    assert ShardPlan.read("three-coats.shards").study == "three-coats"
 
 
 def test_what_sbatch_refuses_is_passed_on(folder, goniosim, sbatch):

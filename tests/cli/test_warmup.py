@@ -88,4 +88,9 @@ def test_after_it_nothing_is_left_to_compile(tmp_path):
         for options in (["--estimator", "auto"], ["--estimator", "split"], ["--set", "simulation.orders=2"]):
             asked = ["simulate", f"{name}.yaml", "-o", "r.h5", "--overwrite", "--rays", "2e5", *small, *options]
             subprocess.run([*COMMAND, *asked], check=True, capture_output=True, **place)
+    for arguments in (
+        *(["simulate", "slab.yaml", "--shard", f"{shard}/2", "-o", "shards", *small] for shard in (1, 2)),
+        ["merge", "shards", "-o", "merged.h5"],
+    ):
+        subprocess.run([*COMMAND, *arguments], check=True, capture_output=True, **place)
     assert kept() == before
