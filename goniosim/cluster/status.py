@@ -5,6 +5,7 @@ from enum import Enum
 from functools import cache
 from pathlib import Path
 
+from goniosim.claims import owner_of
 from goniosim.cluster.division import Division
 from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.standing import State, standing_of
@@ -142,7 +143,7 @@ def _shard(number, tasks, folder, plan, parts):
     damaged = next((standing.why for standing in standings if standing.state is State.DAMAGED), "")
     if all(standing.state is State.DONE for standing in standings):
         stage = Stage.DONE
-    elif any(_is_claimed(task.path(folder)) for task in tasks):
+    elif any(owner_of(task.path(folder)) for task in tasks):
         stage = Stage.RUNNING
     elif failed or damaged:
         stage = Stage.FAILED
@@ -164,8 +165,3 @@ def _failure(folder, number, shards):
     except OSError as error:
         return True, error.strerror or "its error cannot be read"
     return True, " ".join(said[:_LONGEST].split()) or "it says nothing"
-
-
-def _is_claimed(path):
-    """Whether a living process is at work on a file."""
-    return False

@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from goniosim.cluster import ShardPlan, run_shard
+from goniosim.claims import Claim
+from goniosim.cluster import Division, ShardPlan, run_shard
 from goniosim.cluster.status import Shard, Stage, Status, look
 from goniosim.cluster.tracing import error_path
 from goniosim.scene import load_scene
@@ -48,6 +49,16 @@ def test_every_state_has_a_line(planned, goniosim):
     out = goniosim("status", "shards")[1]
     assert "  done         2   1,3\n" in out and "  failed       2   4-5\n" in out
     assert "    5: goniosim: \\x1b[31mno space left\n" in out
+
+
+def test_a_shard_that_somebody_is_at_work_on_runs(planned, goniosim):
+    """Whatever it said before, and only as long as its process lives."""
+    error_path("shards", 2, 5).write_text("of before")
+    (task,) = Division(ShardPlan.read("shards")).tasks(2)
+    with Claim(task.path(planned)):
+        found = parsed(goniosim, "shards")
+        assert (found["running"], found["failed"]) == ([2], [])
+    assert parsed(goniosim, "shards")["failed"] == [2]
 
 
 def test_merged_results_tell_their_noise(planned, goniosim):
