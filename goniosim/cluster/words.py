@@ -93,7 +93,7 @@ def status_text(status, results):
         lines += [f"    {shard.number}: {shard.why}" for shard in shards if shard.why][:MOST_SHOWN]
     if total:
         lines.append(f"  rays     {text.count(done)} of {text.count(total)} ({100.0 * done / total:.3g} %)")
-    lines.append(f"  left     {_left(status)}")
+    lines.append(f"  left     {_left(status, results)}")
     if results:
         rows = [study.row(result, path) for path, result in results.items()]
         lines += ["", f"Merged, in {next(iter(results)).parent}", study.study_text(rows)]
@@ -128,11 +128,11 @@ def status_as_data(status, results):
     }
 
 
-def _left(status):
+def _left(status, results):
     """The time that is left, of all and of the shards that run."""
     unfinished = [shard for shard in status.shards if shard.stage is not Stage.DONE]
     if not unfinished:
-        return "nothing: merge them"
+        return "nothing" if results else "nothing: merge them"
     work, longest = status.seconds_left(unfinished), max(status.seconds_left([shard]) or 0.0 for shard in unfinished)
     if work is None:
         return "nobody can tell yet"

@@ -64,12 +64,13 @@ def test_a_shard_that_somebody_is_at_work_on_runs(planned, goniosim):
 def test_merged_results_tell_their_noise(planned, goniosim):
     for number in range(1, 6):
         run_shard("shards", number, threads=1)
+    assert "  left     nothing: merge them\n" in goniosim("status", "shards")[1]
     assert goniosim("merge", "shards", "-o", "shards/results/small.h5", "-q")[0] == 0
     found = parsed(goniosim, "shards")
     assert found["seconds_left"] == 0.0 and found["rays_done"] == found["rays_planned"]
     assert found["results"]["small"]["status"] == "complete" and 0.0 < found["results"]["small"]["noise"] < 0.1
     out = goniosim("status", "shards")[1]
-    assert "nothing: merge them" in out and "\nMerged, in shards/results\n" in out
+    assert "  left     nothing\n" in out and "\nMerged, in shards/results\n" in out
 
 
 def test_a_folder_without_a_plan_is_an_error(folder, goniosim):
