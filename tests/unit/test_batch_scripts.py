@@ -105,12 +105,13 @@ def test_a_signal_is_passed_on_and_a_warning_leads_back_into_the_queue(task, tmp
     assert task.noted() == [*DONE, "ready", *after]
 
 
-def test_a_warning_while_it_compiles_leaves_the_shard_to_the_next_task(task, tmp_path):
+@pytest.mark.parametrize(("which", "after"), [(signal.SIGUSR1, [AGAIN]), (signal.SIGTERM, [])])
+def test_told_to_stop_while_it_compiles_it_begins_no_shard(task, tmp_path, which, after):
     process = task(f"echo ready >> {tmp_path}/noted; exec sleep 60", "exit 0")
     task.wait_for("ready")
-    process.send_signal(signal.SIGUSR1)
+    process.send_signal(which)
     assert process.wait() == 75
-    assert task.noted() == [DONE[0], "ready", AGAIN]
+    assert task.noted() == [DONE[0], "ready", *after]
 
 
 def test_the_templates_of_the_repository_are_the_packaged_ones():
