@@ -113,8 +113,6 @@ def test_the_folder_of_a_plan_stands_for_what_it_was_made_of(folder, goniosim, m
     assert goniosim("warmup", "shards")[0] == 0
     monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "2")
     assert "shard 2 of 2: " in goniosim("simulate", "shards", "--shard", "auto", "--threads", 1)[1]
-    assert goniosim("simulate", "shards", "--shard", "1/2", "-q")[0] == 0
-    assert goniosim("merge", "shards", "-o", "new/small.h5", "-q")[0] == 0
     code, _, err = goniosim("simulate", "shards", "--shard", 1, "--rays", "5e3")
     assert code == 3 and "shards: --rays 5000: what is planned cannot be changed" in err
     code, _, err = goniosim("simulate", ".", "--shard", 1)

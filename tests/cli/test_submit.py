@@ -5,7 +5,7 @@ import stat
 
 import pytest
 
-from goniosim.cluster import ShardPlan
+from goniosim.cluster import ShardPlan, run_shard
 from goniosim.cluster.tracing import error_path
 
 
@@ -58,14 +58,14 @@ def test_an_array_and_its_merge(folder, goniosim, sbatch):
 def test_only_what_is_missing_is_submitted_again(folder, goniosim, sbatch):
     goniosim(*SUBMIT)
     sbatch()
-    assert goniosim("simulate", "my shards", "--shard", 2, "-q")[0] == 0
+    run_shard("my shards", 2, threads=1)
     error_path("my shards", 3, 3).write_text("no space left\n")
     for command in (("submit", "my shards", "--slurm"), SUBMIT):
         code, out, _ = goniosim(*command, "--", "--time=2:00:00")
         assert code == 0 and "2 shards of 3 submitted" in out
         assert sbatch()[0][:3] == ["--parsable", "--array=1,3", "--time=2:00:00"]
     for number in (1, 3):
-        goniosim("simulate", "my shards", "--shard", number, "-q")
+        run_shard("my shards", number, threads=1)
     code, out, _ = goniosim(*SUBMIT)
     assert code == 0 and sbatch() == []
     assert out.endswith("goniosim merge 'my shards' -o 'my shards/results'\n") and "nothing to submit" in out
