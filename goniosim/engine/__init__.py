@@ -4,6 +4,7 @@ from .estimators.choose import estimators_of
 from .memory import memory_needed, require_memory, shortage, threads_of
 from .pieces import piece_rays
 from .portions import join_portions, trace_portion
+from .prior import prior_of
 from .probe import Probe, probe, warm_up
 from .simulate import checked_state, simulate
 
@@ -14,6 +15,7 @@ __all__ = [
     "join_portions",
     "memory_needed",
     "piece_rays",
+    "prior_of",
     "probe",
     "require_memory",
     "shortage",
