@@ -82,11 +82,22 @@ def cost(plan, runs, before=None):
             for name in names if run.spending.checkpoints[m] else ():
                 error[name][m] = [row[3][name] for row in rows]
         elapsed += np.max([[row[2] for row in rows] for rows in kept], axis=0)
-    return _after(before, Cost(rays, shared_seconds(elapsed, cpu_seconds), cpu_seconds, error))
+    return after(before, Cost(rays, shared_seconds(elapsed, cpu_seconds), cpu_seconds, error))
 
 
-def _after(before, found):
-    """Costs that go on from those before."""
+def after(before, found):
+    """Costs that go on from others, if there are any.
+
+    Parameters
+    ----------
+    before : goniosim.result.Cost or None
+    found : goniosim.result.Cost
+        Its errors are those with what was there before.
+
+    Returns
+    -------
+    goniosim.result.Cost
+    """
     if before is None:
         return found
 

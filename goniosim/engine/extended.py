@@ -7,7 +7,9 @@ from . import assembly
 from .combining import combined
 from .estimate import COMPONENT_OF
 from .estimators import ESTIMATORS
-from .estimators.choose import AUTO, Choice
+from .estimators.choose import AUTO, Choice, choose
+from .plan import make_plan
+from .prior import read_prior
 
 # What nodes may be off by is no more than that share of a target, or the noise would have to be less than half of it.
 MOST_OF_TARGET = 0.9
@@ -60,6 +62,32 @@ class Past:
         self.sides, self.name = (side,), prior.estimators[COMPONENT_OF[side]]
         self.rays = prior.rays(self.sides)
         self.estimate = prior.estimate
+
+
+def prior_of(scene, result):
+    """What a run of a scene goes on from.
+
+    Parameters
+    ----------
+    scene : goniosim.scene.Scene
+    result : goniosim.result.Result
+        Of the same scene; it holds less than is asked for.
+
+    Returns
+    -------
+    goniosim.engine.prior.Prior
+
+    Raises
+    ------
+    goniosim.errors.UnusableResultError
+        If it is of another version of goniosim, does not hold what it takes, or was made by another estimator than the
+        one that serves so many rays. Which one serves a target turns out later.
+    """
+    plan, asked = make_plan(scene), scene.simulation
+    prior = read_prior(plan, result)
+    if asked.target is None:
+        gone_on(plan, choose(plan, asked.estimator, asked.rays), prior, asked)
+    return prior
 
 
 def gone_on(plan, choices, prior, simulation):

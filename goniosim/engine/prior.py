@@ -12,7 +12,6 @@ from ..sums import BATCHES, BLOCKS
 from .assembly import order_labels
 from .estimate import COMPONENT_OF, Estimate
 from .packing import array
-from .plan import make_plan
 from .unit import child_key
 
 # Child of the seed's key, for what is traced besides what is there.
@@ -149,14 +148,14 @@ class Prior:
         return key
 
 
-def prior_of(scene, result):
-    """What a run of a scene may go on from.
+def read_prior(plan, result):
+    """The estimates of a result.
 
     Parameters
     ----------
-    scene : goniosim.scene.Scene
+    plan : goniosim.engine.plan.Plan
+        Of the same scene, the seed perhaps aside.
     result : goniosim.result.Result
-        Of the same scene, the seed perhaps, rays or target aside.
 
     Returns
     -------
@@ -165,22 +164,33 @@ def prior_of(scene, result):
     Raises
     ------
     goniosim.errors.UnusableResultError
-        If it is of another version of goniosim, or does not hold what that takes.
+        If it is of another version of goniosim, or does not hold what it takes.
     """
     version, own = result.provenance.get("goniosim_version"), version_of("goniosim")
     if version != own:
         raise UnusableResultError(f"it is of goniosim {version}, and this is {own}")
-    plan = make_plan(scene)
     try:
         return Prior(plan, _tree(plan, result))
     except (ValueError, TypeError, LookupError, AttributeError) as error:
         raise UnusableResultError(f"it does not hold what it takes to go on: {error}") from error
 
 
-def seeds_of(result):
-    """Seeds of all runs that a result is made of, list of int."""
-    merged = result.provenance.get("merged_seeds")
-    return [int(seed) for seed in merged.split(",")] if merged else [result.seed]
+def seeds_of(seed, provenance):
+    """Seeds of all runs that a result is made of.
+
+    Parameters
+    ----------
+    seed : int
+        Its own.
+    provenance : mapping
+        Its, or the attributes of its file.
+
+    Returns
+    -------
+    list of int
+    """
+    merged = provenance.get("merged_seeds")
+    return [int(each) for each in merged.split(",")] if merged else [seed]
 
 
 def _tree(plan, result):
@@ -199,7 +209,7 @@ def _tree(plan, result):
         "estimators": estimators,
         "audit": {field.name: getattr(result.audit, field.name) for field in fields(Audit)},
         "cost": {field.name: getattr(result.cost, field.name) for field in fields(Cost)},
-        "seeds": seeds_of(result),
+        "seeds": seeds_of(result.seed, result.provenance),
         "provenance": {**lasting, "extended_from": f"{words}, of {result.provenance['created_utc']}"},
     }
 

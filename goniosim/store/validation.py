@@ -93,6 +93,11 @@ HEADER = (
         lambda header: _are_texts(header, "config_yaml", "created_utc", "goniosim_version"),
     ),
     Rule("estimator", "be a plain name", lambda header: is_name(header.get("estimator", "analog"))),
+    Rule(
+        "merged_seeds",
+        "be whole numbers, or absent",
+        lambda header: re.fullmatch(r"\d{1,19}(, \d{1,19})*", str(header.get("merged_seeds", 0)), re.ASCII) is not None,
+    ),
     Rule("an attribute of the root", "have a plain name", lambda header: all(map(is_name, header))),
 )
 
