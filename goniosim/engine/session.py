@@ -23,6 +23,7 @@ from .journal import Journal
 from .packing import pack
 from .plan import Plan
 from .prior import Prior
+from .rounds import FEWEST_PATHS
 from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 from .unit import child_key
 
@@ -186,10 +187,15 @@ class Session:
         """Do all runs, round by round, so that an interruption leaves something of every component."""
         if rays == 0:
             return
-        for rounds in itertools.zip_longest(*(run.rounds(rays) for run in self.runs), fillvalue=()):
+        rounds_of = (run.rounds(rays if run.audits else self._sensible(rays)) for run in self.runs)
+        for rounds in itertools.zip_longest(*rounds_of, fillvalue=()):
             for run, works in zip(self.runs, rounds, strict=True):
                 if works:
                     self._do(run, works)
+
+    def _sensible(self, rays):
+        """So many light paths, or a few more, of replicates that only go on: smaller ones say less of their scatter."""
+        return max(rays, FEWEST_PATHS) if self.simulation.rays >= FEWEST_PATHS else rays
 
     def _do(self, run, works):
         """Do pieces of work, unless they were done before an interruption; returns the seconds they took."""
