@@ -105,7 +105,9 @@ class Prior:
             direct_integrated_stderr=array(audit["direct_integrated_stderr"], totals),
             rays=array(audit["rays"], totals[:1], np.int64),
         )
-        noted = (totals[0], -1)
+        if min(self.audit.rays.min(), *(part.paths.min() for part in self._slices.values())) < 0:
+            raise ValueError("a number of light paths is negative")
+        noted = (totals[0], len(cost["rays"].T))
         self.cost = Cost(
             *(array(cost[name], noted) for name in ("rays", "seconds", "cpu_seconds")),
             error={name: array(cost["error"][name], noted) for name in labels},
