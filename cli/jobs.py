@@ -3,11 +3,15 @@
 import os
 import threading
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from goniosim import claims, parts
 from goniosim.errors import FewerRaysError, GoniosimError, OutputError, StoppedError, UnusableResultError
-from goniosim.parts import remove_dead
+from goniosim.sharing import Sharing
 from goniosim.writing import make_folder
+
+from .sharing import leave_to_others, rays_of_others
 
 # Kernels from the cache load faster than this; a longer wait deserves a word.
 PATIENCE = 1.0
@@ -16,10 +20,11 @@ _REMEDY = "nothing is overwritten: choose another place with -o, or replace resu
 
 @dataclass(frozen=True)
 class Job:
-    """A scene and the file its result goes to."""
+    """A scene and the file its result goes to, of a study with others."""
 
     scene: object
     path: Path
+    of_study: bool = False
 
     @property
     def name(self):
@@ -56,7 +61,7 @@ def plan(scenes, output, folder):
     if folder is None:
         (scene,) = scenes
         return [Job(scene, Path(output or f"{scene.material.name}.h5"))]
-    return [Job(scene, folder / f"{scene.material.name}.h5") for scene in scenes]
+    return [Job(scene, folder / f"{scene.material.name}.h5", of_study=True) for scene in scenes]
 
 
 def sort_out(planned, overwrite, note):
@@ -86,7 +91,9 @@ def sort_out(planned, overwrite, note):
     from goniosim.store import refuse_newer, reserve_output
 
     make_folder(planned[0].path.parent)
-    remove_dead(Path(os.path.realpath(job.path)) for job in planned)
+    places = [Path(os.path.realpath(job.path)) for job in planned]
+    parts.remove_dead(places)
+    claims.remove_dead(places)
     found = {} if overwrite else _look_at(planned)
     for standing in found.values():
         if standing.damage:
@@ -182,6 +189,8 @@ def require_room(planned):
 def run(jobs, progress, signals, verbose, overwrite, every):
     """Simulate and write, yielding each (job, result) once its file stands; end early when stopped.
 
+    Materials of a study that other processes are at work on, or have finished since, are left to them with a word.
+
     Parameters
     ----------
     jobs : list of Job
@@ -190,55 +199,90 @@ def run(jobs, progress, signals, verbose, overwrite, every):
     verbose, overwrite : bool
     every : float
         Seconds between two checkpoints.
-    """
-    from goniosim._jit.folder import notices
-    from goniosim.report.simulation.forecast import effects_text
-    from goniosim.report.simulation.losses import event_cap
-    from goniosim.report.text import counts, duration
-    from goniosim.store import write_result
 
-    for number, job in enumerate(jobs, 1):
-        if signals.reason is not None:
-            return
-        label = f"{number}/{len(jobs)} {job.name}" if len(jobs) > 1 else job.name
-        if verbose:
-            progress.note(effects_text(job.scene))
-        signals.gathering = False
-        with job.reserve() as signals.reservation:
-            seconds = _warm_up(job.scene, progress)
-            if verbose:
-                progress.note(f"{label}: kernels ready after {duration(seconds)}")
-                for notice in notices:
-                    progress.note(notice)
-            try:
-                result = _simulate(job, label, progress, signals, overwrite, every)
-            except StoppedError:
-                progress.note(f"stopped by {signals.reason} before the first rays")
+    Raises
+    ------
+    OutputError
+        Also if another process is at work on the file of a single scene.
+    """
+    from goniosim.report.simulation.losses import event_cap
+
+    sharing = Sharing(jobs, lambda job: job.path, partial(_is_done, overwrite))
+    for number, job, signals.claim in sharing:
+        with signals.claim:
+            if signals.reason is not None:
                 return
-            try:
-                write_result(result, job.path, overwrite=overwrite, reservation=signals.reservation)
-            except FewerRaysError as error:
-                progress.note(f"stopped by {signals.reason}: {error.fact}" if signals.reason else error.fact)
-                continue
+            progress.pass_over(rays_of_others(sharing))
+            label = f"{number}/{len(jobs)} {job.name}" if len(jobs) > 1 else job.name
+            # What others left of it since is no result to be replaced.
+            anew = overwrite and sharing.is_untouched(job)
+            result = _done(job, label, progress, signals, verbose, overwrite, anew, every)
+        if result is None:
+            continue
         if result.status == "partial":
-            total = job.scene.total_rays
-            held = f"{counts(result.rays)} rays per direction"
-            if total is not None:
-                held = f"{100.0 * result.rays.sum() / total:.3g} % of the rays"
-            further = "; the same command goes on" if result.state is not None else ""
-            progress.note(f"stopped by {signals.reason}: {job.path} holds {held} (partial){further}")
+            progress.note(_stopped(job, result, signals))
         if warning := event_cap(result):
             progress.note(f"{label}: {warning}")
         yield job, result
         # Not to be held while the next material is at work.
         del result
+    leave_to_others(sharing, progress.note)
 
 
-def _simulate(job, label, progress, signals, overwrite, every):
+def _is_done(overwrite, job, untouched):
+    """Whether others have finished a material, which is looked at once nobody else works on it."""
+    from goniosim.store import look_at
+
+    if not overwrite:
+        return job.is_finished(_look_at([job]).get(job.path))
+    return not untouched and job.is_finished(look_at(job.path, job.scene))
+
+
+def _done(job, label, progress, signals, verbose, overwrite, anew, every):
+    """Simulate and write one material; None if it was stopped too early, or its file is worth more."""
+    from goniosim._jit.folder import notices
+    from goniosim.report.simulation.forecast import effects_text
+    from goniosim.report.text import duration
+    from goniosim.store import write_result
+
+    if verbose:
+        progress.note(effects_text(job.scene))
+    signals.gathering = False
+    with job.reserve() as signals.reservation:
+        seconds = prepare_kernels(job.scene, progress)
+        if verbose:
+            progress.note(f"{label}: kernels ready after {duration(seconds)}")
+            for notice in notices:
+                progress.note(notice)
+        try:
+            result = _simulate(job, label, progress, signals, overwrite, anew, every)
+        except StoppedError:
+            progress.note(f"stopped by {signals.reason} before the first rays")
+            return None
+        try:
+            write_result(result, job.path, overwrite=overwrite, reservation=signals.reservation)
+        except FewerRaysError as error:
+            progress.note(f"stopped by {signals.reason}: {error.fact}" if signals.reason else error.fact)
+            return None
+    return result
+
+
+def _stopped(job, result, signals):
+    from goniosim.report.text import counts
+
+    total = job.scene.total_rays
+    held = f"{counts(result.rays)} rays per direction"
+    if total is not None:
+        held = f"{100.0 * result.rays.sum() / total:.3g} % of the rays"
+    further = "; the same command goes on" if result.state is not None else ""
+    return f"stopped by {signals.reason}: {job.path} holds {held} (partial){further}"
+
+
+def _simulate(job, label, progress, signals, overwrite, anew, every):
     from goniosim.engine import simulate
     from goniosim.store import keeper
 
-    left = {} if overwrite else _left(job, progress)
+    left = {} if anew else _left(job, progress)
     goes_on = bool(left)
 
     def report(done_rays, total_rays):
@@ -276,7 +320,7 @@ def _left(job, progress):
     return found
 
 
-def _warm_up(scene, progress):
+def prepare_kernels(scene, progress):
     """Compile or load the kernels, saying so when it takes long; return the seconds.
 
     The compiler cannot be interrupted, so it runs in a thread of its own while

@@ -4,6 +4,7 @@ import contextlib
 from dataclasses import replace
 from pathlib import Path
 
+from .jobs import prepare_kernels
 from .policy import say
 from .signals import StopSignals
 
@@ -65,11 +66,12 @@ def trace(described, text, output, time_limit, every, quiet, verbose):
     progress = make_progress(Division(plan).rays(number), quiet)
     with StopSignals(time_limit) as signals, contextlib.closing(progress):
 
-        def begin(task):
-            signals.gathering = False
+        def begin(task, claim):
+            signals.gathering, signals.claim = False, claim
             label = f"{number}/{count} {task.scene.material.name}"
             if verbose:
                 progress.note(effects_text(task.scene))
+            prepare_kernels(task.scene, progress)
 
             def report(done, total):
                 if not signals.gathering:

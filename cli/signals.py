@@ -78,6 +78,7 @@ class StopSignals:
     gathering : bool
         Whether it is; until then the first signal ends the process at once.
     reservation : goniosim.store.Reservation or None
+    claim : goniosim.claims.Claim or None
         To be released before the process ends at once.
     reason : str or None
         What the user calls the first signal, or the end of the time.
@@ -89,6 +90,7 @@ class StopSignals:
         self.event = threading.Event()
         self.gathering = False
         self.reservation = None
+        self.claim = None
         self.reason = None
         self.exit_code = UNFINISHED
         self._since = 0.0
@@ -126,8 +128,9 @@ class StopSignals:
 
     def _end(self, when):
         # No exception: the compiler's threads would hold it up, and a destructor might swallow it.
-        if self.reservation is not None:
-            self.reservation.release()
+        for held in (self.reservation, self.claim):
+            if held is not None:
+                held.release()
         with contextlib.suppress(OSError):
             os.write(2, f"\ngoniosim: stopped by {self.reason} {when}\n".encode())
         os._exit(self.exit_code)

@@ -12,8 +12,8 @@ code  meaning
 2     the command line itself is wrong (unknown option, ...)
 3     the scene file or an override is wrong
 4     the output cannot be written (permission, disk full, ...),
-      something stands there that is not to be overwritten, or
-      there is not enough memory
+      something stands there that is not to be overwritten, another
+      process is at work on it, or there is not enough memory
 5     the file is not a goniosim result
 6     the file is a goniosim result, but damaged
 7     the file was written by a newer, incompatible goniosim
@@ -72,6 +72,10 @@ class OutputError(GoniosimError):
         super().__init__(message)
 
 
+class InUseError(OutputError):
+    """Another process is at work on the output."""
+
+
 class FewerRaysError(OutputError):
     """What stands at the output has more rays of the same scene than what should replace it.
 
@@ -102,6 +106,10 @@ class ForeignFileError(GoniosimError):
     """The file is not a goniosim result."""
 
     exit_code = 5
+
+
+class UnreadableFileError(ForeignFileError):
+    """The file is there, but the operating system does not let it be read: nobody knows what is in it."""
 
 
 class DamagedFileError(GoniosimError):

@@ -5,15 +5,15 @@ system has no locks, the name tells which process of which machine it was.
 """
 
 import contextlib
-import fcntl
-import hashlib
+import math
 import os
-import platform
 import re
 import secrets
 import shutil
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+
+from .owners import FLAGS, boot, host, runs, try_lock
 
 # Of a folder, the file in it that is locked.
 _LOCK = ".lock"
@@ -54,13 +54,13 @@ class Part:
         self._folder = folder
         home = target if inside else target.parent
         for _ in range(_TRIES):
-            owner = f"{_host()}-{_boot()}-{os.getpid()}-{secrets.token_hex(4)}"
+            owner = f"{host()}-{boot()}-{os.getpid()}-{secrets.token_hex(4)}"
             self.path = home / f".{target.name[:_LONGEST]}.{owner}.part"
             if folder:
                 self.path.mkdir()
-            self.descriptor = os.open(_lock_of(self.path, folder), _FLAGS | os.O_CREAT | os.O_EXCL, 0o666)
+            self.descriptor = os.open(_lock_of(self.path, folder), FLAGS | os.O_CREAT | os.O_EXCL, 0o666)
             # Between the two calls another run may have taken it for an orphan.
-            if _lock(self.descriptor) is not False and self._is_there():
+            if try_lock(self.descriptor) is not False and self._is_there():
                 return
             os.close(self.descriptor)
         raise OSError(f"{home}: every new file in it disappears")
@@ -98,10 +98,10 @@ class Part:
             self.descriptor = -1
 
 
-def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
+def remove_dead(targets: Iterable[Path], *, inside: bool = False, before: float | None = None) -> None:
     """Remove parts that runs on these outputs left behind when they were killed.
 
-    Those of a living run are kept, and those of another machine of which nobody here can tell.
+    Those of a living run are kept, and those of another machine of which nobody here can tell, unless they are old.
 
     Parameters
     ----------
@@ -109,6 +109,9 @@ def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
         Files or folders that such parts would have become.
     inside : bool
         Look in the targets, which are folders, instead of beside them.
+    before : float, optional
+        When those of other machines have to have changed last, to be old: for whoever has claimed these outputs, by
+        the clock of the machine that keeps them.
     """
     homes: dict[Path, set[str]] = {}
     for target in targets:
@@ -118,7 +121,10 @@ def remove_dead(targets: Iterable[Path], *, inside: bool = False) -> None:
             for entry in list(os.scandir(home)):
                 match = _PART.fullmatch(entry.name)
                 if match and match[1] in names:
-                    _remove_if_dead(Path(entry.path), entry.is_dir(follow_symlinks=False), *match.groups()[1:])
+                    # A name that may have been cut may be that of another output.
+                    old = before is not None and len(match[1]) < _LONGEST and _changed(entry) < before
+                    folder = entry.is_dir(follow_symlinks=False)
+                    _remove_if_dead(Path(entry.path), folder, *match.groups()[1:], old=old)
 
 
 @contextlib.contextmanager
@@ -139,7 +145,7 @@ def turn(folder: Path, patience: float = 2.0) -> Iterator[None]:
         with contextlib.suppress(OSError):
             descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
             last = time.monotonic() + patience
-            while _lock(descriptor) is False and time.monotonic() < last:
+            while try_lock(descriptor) is False and time.monotonic() < last:
                 time.sleep(0.01)
         yield
     finally:
@@ -147,21 +153,27 @@ def turn(folder: Path, patience: float = 2.0) -> Iterator[None]:
             os.close(descriptor)
 
 
-_FLAGS = os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW
+def _changed(entry: os.DirEntry[str]) -> float:
+    try:
+        return entry.stat(follow_symlinks=False).st_mtime
+    except FileNotFoundError:
+        return math.inf
 
 
-def _remove_if_dead(path: Path, folder: bool, host: str, boot: str, pid: str) -> None:
-    here, since_boot = host == _host(), boot == _boot()
+def _remove_if_dead(path: Path, folder: bool, on: str, since: str, pid: str, *, old: bool) -> None:
+    here, since_boot = on == host(), since == boot()
     # A lock may not reach from one machine to another.
     if not (here or since_boot):
+        if old:
+            _remove(path, folder)
         return
     free = None
     descriptor = -1
     try:
         with contextlib.suppress(OSError):
-            descriptor = os.open(_lock_of(path, folder), _FLAGS)
-            free = _lock(descriptor)
-        dead = free or (free is None and here and not (since_boot and _runs(int(pid))))
+            descriptor = os.open(_lock_of(path, folder), FLAGS)
+            free = try_lock(descriptor)
+        dead = free or (free is None and here and not (since_boot and runs(int(pid))))
         if dead:
             _remove(path, folder)
     finally:
@@ -183,40 +195,3 @@ def _remove(path: Path, folder: bool) -> None:
 
 def _lock_of(path: Path, folder: bool) -> Path:
     return path / _LOCK if folder else path
-
-
-def _lock(descriptor: int) -> bool | None:
-    """Try to lock an open file: False if somebody else holds it, None where there are no locks."""
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        return None
-    return True
-
-
-def _runs(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        pass
-    return True
-
-
-def _host() -> str:
-    return _short(platform.node())
-
-
-def _boot() -> str:
-    """Which start of which machine this is; where the system does not say, the machine."""
-    try:
-        return _short(Path("/proc/sys/kernel/random/boot_id").read_text())
-    except OSError:
-        return _host()
-
-
-def _short(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:8]

@@ -48,10 +48,16 @@ class _Calls:
         self._total_rays = total_rays
         self._earlier_rays = 0
         self._rays = 0
+        self._passed_over = 0
 
     def begin(self, description: str, inherited: int = 0) -> None:
         """A new material: earlier rays stay done."""
         self._earlier_rays = self._rays
+
+    def pass_over(self, rays: int | None) -> None:
+        """Leave so many rays of all materials to others: they are done."""
+        self._rays += (rays or 0) - self._passed_over
+        self._passed_over = rays or 0
 
     def update(self, done_rays: int, total_rays: int | None) -> None:
         """Say how far this material has come."""

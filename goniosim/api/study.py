@@ -1,15 +1,17 @@
-"""All materials of a study, one after the other."""
+"""All materials of a study, one after the other, each by one process."""
 
-import contextlib
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
+from ..claims import remove_dead
 from ..errors import FewerRaysError, GoniosimError, OutputError, StoppedError
 from ..result import Result
 from ..scene import Scene, Source, as_scenes, total_rays, with_arguments
+from ..sharing import Sharing
 from ..store import keeper, look_at, reserve_output, result_left, state_left, write_result
 from ..writing import StrPath, make_folder
 from .progress import Progress, progress_of
@@ -88,6 +90,8 @@ def simulate_study(
         Write each result into ``NAME.h5`` there as soon as it is done, instead of keeping all in memory.
         Files that hold the rays or the accuracy asked for, or more, are left alone; those with less go on from what
         they hold, and the one that was at work from its last checkpoint, a minute ago at most: calling again goes on.
+        Processes that simulate into one folder share the materials, and each leaves out those that others are at work
+        on.
     overwrite : bool
         Leave no file alone: simulate all anew, and replace whatever results stand there.
     rays, seed, threads, estimator, target, of, max_rays, max_time, progress, stop
@@ -97,7 +101,7 @@ def simulate_study(
     -------
     dict of str to goniosim.result.Result, or of str to Path
         By the name of the material, in the order of the study: the results, or with ``folder`` their files,
-        those left alone included.
+        those left alone included, and those that other processes are at work on left out.
 
     Raises
     ------
@@ -136,12 +140,15 @@ def simulate_study(
         return results
     paths = {scene.material.name: Path(folder) / f"{scene.material.name}.h5" for scene in scenes}
     make_folder(folder)
+    remove_dead(paths.values())
     files = {name: paths[name] for name in ([] if overwrite else _finished(scenes, paths))}
     todo = [scene for scene in scenes if scene.material.name not in files]
     for scene in todo:
         # Room is kept only for the material at work.
         reserve_output(paths[scene.material.name], 0).release()
-    _run(todo, partial(_into_file, paths, overwrite), files, progress, stop)
+    sharing = Sharing(todo, lambda scene: paths[scene.material.name], partial(_is_done, paths, overwrite))
+    _run(todo, partial(_into_file, paths, overwrite, sharing), files, progress, stop, sharing)
+    files.update((scene.material.name, paths[scene.material.name]) for scene in sharing.finished)
     return {name: files[name] for name in paths if name in files}
 
 
@@ -151,35 +158,59 @@ def _run(
     kept: dict[str, Kept],
     progress: Progress,
     stop: threading.Event | None,
+    sharing: Sharing[Scene] | None = None,
 ) -> None:
-    """Add ``one(scene, label, shown, asked)`` of each scene to what is kept, until somebody asks to stop."""
+    """Add ``one(scene, label, shown, asked)`` of each scene to what is kept, until somebody asks to stop.
+
+    Of each scene that there is to do, if they are shared with other processes.
+    """
     with progress_of(progress, total_rays(scenes)) as shown, Stop(stop) as asked:
         asked.gathering = bool(kept)
-        for number, scene in enumerate(scenes, 1):
+        for number, scene, claim in sharing or ((*each, nullcontext()) for each in enumerate(scenes, 1)):
             name = scene.material.name
-            try:
-                kept[name] = one(scene, f"{number}/{len(scenes)} {name}", shown, asked)
-            except StoppedError:
-                # An error only if there is nothing from the materials before it either.
-                if not kept and asked.interrupted:
-                    raise KeyboardInterrupt from None
-                if not kept:
-                    raise
+            with claim:
+                if sharing is not None:
+                    shown.pass_over(total_rays([*sharing.finished, *(each for each, _ in sharing.owners)]))
+                try:
+                    kept[name] = one(scene, f"{number}/{len(scenes)} {name}", shown, asked)
+                except StoppedError:
+                    # An error only if there is nothing from the materials before it either.
+                    if not kept and asked.interrupted:
+                        raise KeyboardInterrupt from None
+                    if not kept:
+                        raise
             if asked.is_set():
                 return
 
 
-def _into_file(paths: Mapping[str, Path], overwrite: bool, scene: Scene, label: str, shown: Any, asked: Stop) -> Path:
+def _into_file(
+    paths: Mapping[str, Path],
+    overwrite: bool,
+    sharing: Sharing[Scene],
+    scene: Scene,
+    label: str,
+    shown: Any,
+    asked: Stop,
+) -> Path:
     from ..report.simulation.forecast import file_size
 
     path = paths[scene.material.name]
+    # What others left of it since is no result to be replaced.
+    anew = overwrite and sharing.is_untouched(scene)
     with reserve_output(path, file_size(scene)) as reservation:
-        left = {} if overwrite else _left(path, scene)
+        left = {} if anew else _left(path, scene)
         result = trace(scene, label, shown, asked, checkpoint=keeper(path, overwrite), **left)
         # Ended early it may have fewer rays than an earlier file, which then stays.
-        with contextlib.suppress(FewerRaysError):
+        with suppress(FewerRaysError):
             write_result(result, path, overwrite=overwrite, reservation=reservation)
     return path
+
+
+def _is_done(paths: Mapping[str, Path], overwrite: bool, scene: Scene, untouched: bool) -> bool:
+    if not overwrite:
+        return bool(_finished([scene], paths))
+    found = None if untouched else look_at(paths[scene.material.name], scene)
+    return found is not None and found.holds(scene.simulation)
 
 
 def _left(path: Path, scene: Scene) -> dict[str, Any]:

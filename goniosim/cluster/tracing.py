@@ -7,15 +7,25 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from goniosim.claims import Claim
+from goniosim.cluster.claimed import claimed
 from goniosim.cluster.division import Division, Task
 from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.standing import Standing, State, standing_of
 from goniosim.engine import checked_state, simulate, trace_portion
-from goniosim.errors import FewerRaysError, GoniosimError, OutputError, StoppedError, UnusableResultError
+from goniosim.errors import (
+    FewerRaysError,
+    GoniosimError,
+    InUseError,
+    OutputError,
+    StoppedError,
+    UnreadableFileError,
+    UnusableResultError,
+)
 from goniosim.provenance import provenance
 from goniosim.scene import Scene, with_arguments
 from goniosim.store import Portion, keeper, read_portion, state_left, write_portion, write_result
-from goniosim.writing import StrPath, replacing
+from goniosim.writing import StrPath, explained, replacing
 
 Progress = Callable[[int, int | None], object]
 
@@ -32,7 +42,7 @@ def run_shard(
     threads: int | None = None,
     stop: threading.Event | None = None,
     every: float = 60.0,
-    begin: Callable[[Task], Progress | None] = lambda _: None,
+    begin: Callable[[Task, Claim], Progress | None] = lambda *_: None,
     note: Callable[[str], object] = lambda _: None,
 ) -> list[tuple[Task, Standing]]:
     """Trace what is missing of a shard of a folder with a plan.
@@ -49,7 +59,8 @@ def run_shard(
     every : float
         Seconds between two checkpoints, at least.
     begin : callable
-        Called with each task that is begun; returns what to call as ``progress(done_rays, total_rays)``, if anything.
+        Called with each task that is begun and the claim on its file; returns what to call as
+        ``progress(done_rays, total_rays)``, if anything.
     note : callable
         Called with a line on what was found.
 
@@ -61,7 +72,7 @@ def run_shard(
     Raises
     ------
     OutputError
-        If a file cannot be written, or something else stands in its place.
+        If a file cannot be written, something else stands in its place, or another process is at work on it.
     StoppedError
         If it was stopped before there was anything to keep.
     """
@@ -72,17 +83,21 @@ def run_shard(
     found: list[tuple[Task, Standing]] = []
     try:
         for task in Division(plan).tasks(shard):
-            before = standing_of(task, folder)
-            if before.state is State.DAMAGED:
-                note(f"to be replaced: {before.why}")
-            if before.state is not State.DONE:
-                if stop.is_set():
-                    break
-                before = _trace(task, folder, threads, stop, every, begin(task), note)
+            with explained(task.path(folder)), claimed(task.path(folder), stop, note) as claim:
+                before = standing_of(task, folder)
+                if before.state is State.DAMAGED:
+                    note(f"to be replaced: {before.why}")
+                if before.state is not State.DONE:
+                    if stop.is_set():
+                        break
+                    before = _trace(task, folder, threads, stop, every, begin(task, claim), note)
             found.append((task, before))
     except StoppedError:
         if not found:
             raise
+    except InUseError:
+        # No failure of whoever is at work on it.
+        raise
     except GoniosimError as error:
         # A disk that is full takes no word on it either.
         with contextlib.suppress(OutputError), replacing(failure) as temporary:
@@ -147,6 +162,8 @@ def _left(path: Path, note: Callable[[str], object]) -> tuple[bytes | None, int]
     try:
         portion, state = read_portion(path)
         checked_state(state)
+    except UnreadableFileError:
+        raise
     except GoniosimError as error:
         note(f"{path}: begins anew: {error}")
         return None, 0

@@ -1,7 +1,7 @@
 """Progress of a long computation: a bar on a terminal, slow log lines elsewhere, or nothing.
 
 The three classes have the same verbs: ``begin`` one material, ``update`` with the rays done in
-it, say a ``note``, ``close``.
+it, ``pass_over`` those of other processes, say a ``note``, ``close``.
 """
 
 import sys
@@ -46,6 +46,9 @@ class Silent:
     def update(self, done_rays, total_rays):
         """Say how far this material has come."""
 
+    def pass_over(self, rays):
+        """Leave so many rays of all materials to others."""
+
     def note(self, message):
         """Show a line of text."""
 
@@ -61,6 +64,7 @@ class _Shown:
         self.earlier_rays = 0
         self.rays = 0
         self.inherited = 0
+        self.passed_over = 0
         self.stream = stream
 
     def begin(self, description, inherited=0):
@@ -68,6 +72,13 @@ class _Shown:
         self.earlier_rays = self.rays
         self.inherited += inherited
         self.description = description
+
+    def pass_over(self, rays):
+        """Leave so many rays of all materials to others, between two of ours: they say nothing of speed."""
+        more = (rays or 0) - self.passed_over
+        self.rays += more
+        self.inherited += more
+        self.passed_over += more
 
     def _try(self, show, *arguments, **options):
         # A terminal that is closed, or a log on a full disk, must not end hours of tracing.

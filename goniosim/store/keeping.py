@@ -18,6 +18,7 @@ from goniosim.errors import (
     GoniosimError,
     NewerSchemaError,
     OutputError,
+    UnreadableFileError,
     UnusableResultError,
 )
 from goniosim.result import Result
@@ -117,7 +118,7 @@ def look_at(
     Raises
     ------
     OutputError
-        If it is not a result, or one that only a newer goniosim can read.
+        If it is not a result, one that only a newer goniosim can read, or one that cannot be read at all now.
     """
     try:
         header = read_header(path)
@@ -130,8 +131,8 @@ def look_at(
             _verify(path)
     except DamagedFileError as error:
         return Standing(damage=str(error))
-    except NewerSchemaError as error:
-        raise _newer(error) from error
+    except (NewerSchemaError, UnreadableFileError) as error:
+        raise _not_overwritten(error) from error
     except (ForeignFileError, UnusableResultError):
         # Nothing, or something that is none of ours: this tells.
         reserve_output(path, 0).release()
@@ -144,7 +145,7 @@ def refuse_newer(path: StrPath) -> None:
     try:
         read_header(path)
     except NewerSchemaError as error:
-        raise _newer(error) from error
+        raise _not_overwritten(error) from error
     except GoniosimError:
         # Nothing there, or nothing to lose.
         pass
@@ -226,5 +227,5 @@ def _look_into(path: StrPath) -> tuple[np.ndarray, bool]:
     raise DamagedFileError(f"{path}: does not say how many rays were traced; {RESULT.remedy}")
 
 
-def _newer(error: NewerSchemaError) -> OutputError:
+def _not_overwritten(error: GoniosimError) -> OutputError:
     return OutputError(f"{error}; the file is not overwritten")

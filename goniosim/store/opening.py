@@ -1,6 +1,7 @@
 """From a path to an open file that is what goniosim wrote, or a clear line on why it is not."""
 
 import contextlib
+import errno
 import io
 import stat
 import warnings
@@ -16,6 +17,7 @@ from goniosim.errors import (
     ForeignFileError,
     GoniosimError,
     NewerSchemaError,
+    UnreadableFileError,
     UnusableResultError,
 )
 from goniosim.store import access, checksums, legacy, seal
@@ -26,6 +28,10 @@ from goniosim.writing import StrPath, printable
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # Where the superblock of HDF5 (version 2 and 3) says how long the file is.
 _END_AT = slice(28, 36)
+# At such a path there is no file.
+_NOWHERE = (None, errno.ELOOP, errno.ENAMETOOLONG, errno.ENOTDIR)
+# What the system says to whoever follows a damaged offset, unlike all else.
+_MISLED = (errno.EINVAL, errno.EOVERFLOW)
 
 
 def open_regular(path: StrPath) -> io.BufferedReader:
@@ -42,7 +48,7 @@ def open_regular(path: StrPath) -> io.BufferedReader:
     Raises
     ------
     ForeignFileError
-        If the file is missing, unreadable, or not a regular file.
+        If the file is missing or not a regular file; an UnreadableFileError if the system refuses it.
     """
     try:
         mode = Path(path).stat().st_mode
@@ -56,7 +62,8 @@ def open_regular(path: StrPath) -> io.BufferedReader:
         raise ForeignFileError(f"{path}: no such file; check the path") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise ForeignFileError(f"{path}: cannot be opened: {reason}; check the path and the permissions") from error
+        foreign = ForeignFileError if getattr(error, "errno", None) in _NOWHERE else UnreadableFileError
+        raise foreign(f"{path}: cannot be opened: {reason}; check the path and the permissions") from error
 
 
 @contextlib.contextmanager
@@ -72,10 +79,16 @@ def decoding(path: StrPath, remedy: str) -> Iterator[None]:
     Raises
     ------
     DamagedFileError
+    UnreadableFileError
+        It is the disk that fails: another attempt may find the file sound.
     """
     try:
         yield
     except (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError, MemoryError) as error:
+        if isinstance(error, OSError) and error.errno and error.errno not in _MISLED:
+            raise UnreadableFileError(
+                f"{path}: cannot be read: {error.strerror}; check the disk and the connection to it, and try again"
+            ) from error
         reason = printable(" ".join(str(error).split()) or type(error).__name__)
         raise DamagedFileError(f"{path}: is damaged, or goniosim did not write it so: {reason}; {remedy}") from error
 
@@ -232,6 +245,18 @@ def kind_of(path: StrPath) -> tuple[Kind | None, bool]:
             return _kind(stream, stream.read(seal.WINDOW))
     except (ForeignFileError, OSError):
         return None, False
+
+
+def is_unreadable(path: StrPath) -> bool:
+    """Whether a file is there, but the system does not let it be read."""
+    try:
+        with open_regular(path) as stream:
+            stream.read(1)
+    except (UnreadableFileError, OSError):
+        return True
+    except ForeignFileError:
+        pass
+    return False
 
 
 def _kind(stream: BinaryIO, head: bytes) -> tuple[Kind | None, bool]:

@@ -11,7 +11,7 @@ from typing import Self
 from goniosim.errors import OutputError
 from goniosim.parts import Part, remove_dead, turn
 from goniosim.store.kinds import RESULT, Kind
-from goniosim.store.opening import kind_of
+from goniosim.store.opening import is_unreadable, kind_of
 from goniosim.writing import NO_ROOM, StrPath, explained, remedy
 
 Buffer = bytes | memoryview
@@ -89,11 +89,11 @@ class Reservation:
         """
         with explained(self._shown):
             _write(self._part.descriptor, parts)
-        with turn(self._target.parent):
+        # Also what fails on the way to an answer on what stands there.
+        with turn(self._target.parent), explained(self._shown):
             _refuse_to_destroy(self._target, self._shown, self._kind)
             check()
-            with explained(self._shown):
-                self._part.move(self._target)
+            self._part.move(self._target)
         # The name itself survives a power cut only after this. Some network file systems refuse it.
         with contextlib.suppress(OSError):
             folder = os.open(self._target.parent, os.O_RDONLY)
@@ -136,9 +136,9 @@ def reserve_output(path: StrPath, size_bytes: int, kind: Kind = RESULT) -> Reser
         if target.is_symlink():
             raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
         _refuse_to_destroy(target, path, kind)
-    if not target.parent.is_dir():
-        what = "is not a folder" if target.parent.exists() else "does not exist"
-        raise OutputError(f"{path}: the folder {target.parent} {what}; create it, or choose another place")
+        if not target.parent.is_dir():
+            what = "is not a folder" if target.parent.exists() else "does not exist"
+            raise OutputError(f"{path}: the folder {target.parent} {what}; create it, or choose another place")
     if size_bytes:
         remove_dead([target])
     try:
@@ -185,7 +185,8 @@ def rescue(parts: Sequence[Buffer], path: StrPath) -> str:
             os.close(descriptor)
     except OSError as error:
         if name is not None:
-            os.unlink(name)
+            with contextlib.suppress(OSError):
+                os.unlink(name)
         return f"nor could the result be saved in {directory}: {error.strerror}"
     return f"the result was saved as {name} instead"
 
@@ -194,6 +195,8 @@ def _refuse_to_destroy(target: Path, shown: StrPath, kind: Kind) -> None:
     if target.is_dir():
         raise OutputError(f"{shown}: is a folder; name a file in it, such as {Path(shown) / 'result.h5'}")
     if target.exists() and kind_of(target)[0] is not kind:
+        if is_unreadable(target):
+            raise OutputError(f"{shown}: exists and cannot be read, so it is not overwritten; choose another name")
         raise OutputError(
             f"{shown}: exists and is not {kind.what}, so it is not overwritten; choose another name or remove it"
         )

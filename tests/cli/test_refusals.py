@@ -107,10 +107,17 @@ def test_fewer_threads_where_fewer_are_granted(few_threads):
 
 
 def test_a_simulation_makes_do_with_the_threads_it_gets(goniosim, folder, few_threads):
+    # One more gives signs of life to other processes.
+    few_threads.most = 3
     code, _, _ = goniosim("simulate", "scene.yaml", "-q", "--threads", "8", "-o", "few.h5")
     assert code == 0
     code, out, _ = goniosim("info", "few.h5")
     assert code == 0 and "threads            2" in " ".join(out.split("\n"))
+
+
+def test_the_last_thread_is_for_the_work(goniosim, folder, few_threads):
+    few_threads.most = 1
+    assert goniosim("simulate", "scene.yaml", "-q", "--threads", "8") == (0, "", "")
 
 
 def test_without_a_thread_a_simulation_is_refused(goniosim, folder, few_threads):

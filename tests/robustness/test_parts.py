@@ -8,11 +8,13 @@ import signal
 import subprocess
 import sys
 import textwrap
+import time
 from pathlib import Path
 
 import pytest
 
 from goniosim import parts
+from goniosim.claims import SILENCE, Claim
 from goniosim.parts import Part, remove_dead, turn
 from goniosim.report.comparison.folder import ReportFolder
 from goniosim.store import open_result, reserve_output, write_result
@@ -117,6 +119,37 @@ def test_who_is_dead(tmp_path, dead, monkeypatch, owner, locks, removed):
     assert path.exists() != removed
 
 
+@pytest.mark.parametrize(
+    ("owner", "age", "removed"),
+    [
+        ({"host": "0" * 8, "boot": "0" * 8}, 2 * SILENCE, True),
+        ({"host": "0" * 8, "boot": "0" * 8}, 0.5 * SILENCE, False),
+        # Of this machine: its owner is asked, who holds a lock.
+        (None, 2 * SILENCE, False),
+    ],
+)
+def test_whoever_has_claimed_an_output_removes_what_other_machines_left(tmp_path, dead, owner, age, removed):
+    living = Part(tmp_path / "r.h5")
+    path = living.path if owner is None else dead(**owner)
+    os.utime(path, (time.time() - age,) * 2)
+    with Claim(tmp_path / "r.h5") as claim:
+        claim.remove_parts()
+        assert path.exists() != removed
+    living.remove()
+
+
+def test_parts_whose_names_are_cut_may_be_of_somebody_else(tmp_path):
+    """The output of another process may begin with the same words."""
+    target, other = tmp_path / f"{'x' * 40}1.h5", tmp_path / f"{'x' * 40}2.h5"
+    part = Part(other)
+    path = part.path.rename(re.sub(r"\w+-\w+-(?=\d+-)", "00000000-00000000-", str(part.path)))
+    os.utime(path, (0.0, 0.0))
+    with Claim(target) as claim:
+        claim.remove_parts()
+    assert path.exists()
+    os.close(part.descriptor)
+
+
 def test_only_parts_of_this_output_are_looked_at(tmp_path, dead):
     path = dead()
     others = [".r.h5.part", ".r.h5.0123abcd.part", "r.h5.part", "r.h5"]
@@ -130,7 +163,7 @@ def test_only_parts_of_this_output_are_looked_at(tmp_path, dead):
 
 def test_a_part_that_is_taken_for_dead_while_it_is_made_is_made_anew(tmp_path, monkeypatch):
     """Another run looks between the creation of the file and its lock."""
-    lock = parts._lock
+    lock = parts.try_lock
     seen = []
 
     def late(descriptor):
@@ -139,7 +172,7 @@ def test_a_part_that_is_taken_for_dead_while_it_is_made_is_made_anew(tmp_path, m
             remove_dead([tmp_path / "r.h5"])
         return lock(descriptor)
 
-    monkeypatch.setattr(parts, "_lock", late)
+    monkeypatch.setattr(parts, "try_lock", late)
     part = Part(tmp_path / "r.h5")
     assert len(seen) == 1 and list(tmp_path.iterdir()) == [part.path] != seen
 

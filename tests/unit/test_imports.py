@@ -21,14 +21,17 @@ MODULES = {"goniosim": ROOT / "goniosim", "goniosim_cli": ROOT / "cli"}
 GROUND = {
     "accuracy",
     "albedo",
+    "claims",
     "containers",
     "cores",
     "effective",
     "errors",
     "free_memory",
+    "owners",
     "parts",
     "provenance",
     "result",
+    "sharing",
     "sums",
     "writing",
 }

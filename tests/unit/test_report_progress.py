@@ -62,6 +62,25 @@ def test_rays_that_were_there_before_say_nothing_of_speed():
     assert (counted["n"], counted["initial"]) == (2_000_000, 1_000_000)
 
 
+def test_rays_of_others_are_done_and_say_nothing_of_speed():
+    log, clock, stream = _log(4_000_000)
+    bar = progress.Bar(4_000_000, io.StringIO())
+    for shown in (log, bar):
+        shown.pass_over(2_000_000)
+        # One of two was taken over.
+        shown.pass_over(1_000_000)
+        shown.begin("metal")
+        clock.now += 5.0
+        shown.update(1_000_000, 1_000_000)
+    assert stream.getvalue().endswith("metal: 50 % of 4e6 rays, 200 k rays/s, about 10 s left\n")
+    counted = bar._bar.format_dict
+    assert (counted["n"], counted["initial"]) == (2_000_000, 1_000_000)
+    # Where targets decide, nobody knows how many.
+    log, _, _ = _log(None)
+    log.pass_over(None)
+    assert log.rays == 0
+
+
 def test_log_lines_tell_rays_and_rate_where_a_target_decides():
     log, clock, stream = _log(None)
     log.begin("metal")
