@@ -20,9 +20,9 @@ from .policy import debug_option, say
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @debug_option
 def merge(sources, output, allow_missing, only, threads, overwrite, quiet):
-    """Join the shards of a folder to what one run would have yielded, or results to a better one.
+    """Join the shards of a folder, or results of different seeds.
 
-    SOURCES is the folder of `goniosim simulate --shard`. The numbers are the same to the last bit, whatever the
+    SOURCES is the folder of `goniosim simulate --shard`: the numbers are those of one run to the last bit, whatever the
     number of shards. If some are missing, not finished or damaged, they are named as a list for --array, nothing is
     written, and the exit code is 8.
 
