@@ -122,7 +122,8 @@ def worst_error(plan, run, direction, of):
         one = run.estimate(side, direction)
         total = one.energy.sum(axis=(1, 2)), one.total_stderr
         found.append(bound(of, one.energy, one.stderr, total, size, weights, one.noise, one.bias))
-    return max(found)
+    # Nothing but the direct reflection may leave.
+    return max(found, default=0.0)
 
 
 def floor(plan, run, direction):

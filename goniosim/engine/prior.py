@@ -105,7 +105,7 @@ class Prior:
             direct_integrated_stderr=array(audit["direct_integrated_stderr"], totals),
             rays=array(audit["rays"], totals[:1], np.int64),
         )
-        if min(self.audit.rays.min(), *(part.paths.min() for part in self._slices.values())) < 0:
+        if any((rays < 0).any() for rays in (self.audit.rays, *(part.paths for part in self._slices.values()))):
             raise ValueError("a number of light paths is negative")
         noted = (totals[0], len(cost["rays"].T))
         self.cost = Cost(

@@ -1,5 +1,6 @@
 """Results of different seeds, made one: with the rays of all of them, and as if one run had traced these."""
 
+import dataclasses
 import functools
 import itertools
 
@@ -70,6 +71,12 @@ def test_the_errors_are_those_of_as_many_rays():
     merged = functools.reduce(unite, [made("analog", seed) for seed in (1, 2, 3, 4)])
     errors = [np.linalg.norm(r.components["reflection/internal"].stderr) for r in (merged, made("analog", 5, 12_000))]
     assert errors[0] == pytest.approx(errors[1], rel=0.05)
+
+
+def test_a_partial_one_counts_as_far_as_it_goes():
+    partial = dataclasses.replace(made("analog", 2), status="partial")
+    both = unite(made("analog", 1), partial)
+    assert both.status == "partial" and both.rays.tolist() == [6000, 6000]
 
 
 def test_other_estimators_are_refused():
