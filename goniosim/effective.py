@@ -39,8 +39,8 @@ def effective_count(mean: ArrayLike, stderr: ArrayLike, n: ArrayLike) -> np.ndar
     # Not the squares of the two: what is left of an absorbed channel has none.
     ratio = np.divide(stderr, mean, out=np.full(np.broadcast(mean, stderr).shape, np.inf), where=mean > 0.0)
     # Next to nothing of a strongly absorbed channel: the square may be infinite, as it is where nothing arrived.
-    with np.errstate(over="ignore"):
-        return 1.0 / ((n - 1.0) / n * ratio**2 + 1.0 / n)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.where(np.isinf(ratio), 0.0, 1.0 / ((n - 1.0) / n * ratio**2 + 1.0 / n))
 
 
 def uncertain(mean: ArrayLike, stderr: ArrayLike, n: ArrayLike) -> np.ndarray:

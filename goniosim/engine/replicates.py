@@ -43,9 +43,10 @@ class Replicates:
         self._empty = partial(Section, views, shape, columns)
         self._alike = alike
         slices, sums = (len(views), *shape), (len(views), shape[0])
-        self._cells, self._totals, self._batches = _Sum(slices), _Sum(sums), 0.0
+        self._cells, self._totals = _Sum(slices), _Sum(sums)
         self.paths = self.count = 0
         self._begin(0)
+        self._batches = np.zeros((REPLICATES, *self._round.shape_of_blocks))
 
     def _begin(self, size):
         self._size = size
@@ -136,8 +137,7 @@ class Replicates:
             each.restore(values)
         self.paths, self.count, self._size = (int(state[name]) for name in ("paths", "count", "size"))
         self._begin(self._size)
-        blocks = (REPLICATES, *self._round.shape_of_blocks)
-        self._batches = array(state["batches"], blocks) if self.count else 0.0
+        self._batches = array(state["batches"], self._batches.shape)
         self._round.restore(state["round"])
         self._section.restore(state["section"])
 

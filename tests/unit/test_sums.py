@@ -165,7 +165,8 @@ def test_the_effective_number_is_that_of_the_paths():
     kept = made.max(axis=(1, 2)) > 1e-150
     assert kept.sum() == 3
     np.testing.assert_allclose(effective_count(mean, stderr, 500)[kept], expected[kept], rtol=1e-9)
-    assert effective_count(0.0, 0.0, 500) == 0.0 and uncertain(0.0, 0.0, 500)
+    for n in (0, 1, 500):
+        assert effective_count(0.0, 0.0, n) == 0.0 and uncertain(0.0, 0.0, n)
     assert effective_count(1.0, 0.0, 500) == 500.0 and not uncertain(1.0, 0.0, 500)
     assert effective_count(1e-300, 1.0, 500) == 0.0
 
