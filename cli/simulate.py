@@ -54,7 +54,7 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard
 
     With --shard the folder OUT takes one share of the work, for `goniosim merge` to join with the others. In a task
     of a Slurm array auto/16 takes the number from SLURM_ARRAY_TASK_ID; the count may be left out where OUT holds
-    the plan of `goniosim plan`.
+    the plan of `goniosim plan`, and then CONFIG may be that folder too.
 
     \b
     Examples: goniosim simulate quickstart.yaml
@@ -73,12 +73,14 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard
 
     from . import jobs, shards
 
-    described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     if shard is not None:
         if overwrite:
             raise click.UsageError("--overwrite does not go with --shard: remove what is to be made anew")
+        described = shards.only(shards.load(config, overrides, asked), only)
+        home = output or (config if Path(config).is_dir() else None)
         times = seconds_of(time_limit), seconds_of(checkpoint)
-        ctx.exit(shards.trace(described, shard, output, *times, quiet, verbose))
+        ctx.exit(shards.trace(described, shard, home, *times, quiet, verbose))
+    described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
     notes = []

@@ -74,8 +74,7 @@ def merge(
         raise _incomplete(folder, lacking)
     for line in lacking.values():
         note(f"left out: {line}" if not line.endswith("not finished") else f"used as far as it goes: {line}")
-    if plan.study is not None:
-        make_folder(out)
+    make_folder(out if plan.study is not None else Path(out).parent)
     words = f"{len({task.shard for task in tasks})} shards"
     if numbers := {task.shard for task in lacking}:
         words += f", of which {array_list(list(numbers))} are missing or not finished"
