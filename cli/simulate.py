@@ -46,8 +46,8 @@ def simulate(ctx, config, output, overrides, checkpoint, time_limit, only, shard
     """Simulate a scene or study file and write the result.
 
     CONFIG is the file, or - for the standard input. A study writes one file per material into a folder.
-    A file that holds the rays or the accuracy asked for, or more, stays as it is; one with less is
-    replaced; the result of another scene is an error. Ctrl-C, a signal of a batch system or --time-limit
+    A file that holds the rays or the accuracy asked for, or more, stays as it is; one with less goes
+    on from what it holds; the result of another scene is an error. Ctrl-C, a signal of a batch system or --time-limit
     stop within two seconds and keep what was gathered, marked as partial: the same command goes on from
     there, to the same numbers as without the interruption. A target that --max-rays or --max-time cut
     short leaves a result, and exit code 9.

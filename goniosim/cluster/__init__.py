@@ -6,6 +6,7 @@ from goniosim.cluster.plan_file import ShardPlan, plan_of
 from goniosim.cluster.shard import array_list, parse_shard
 from goniosim.cluster.standing import Standing, State, standing_of
 from goniosim.cluster.tracing import error_path, run_shard
+from goniosim.cluster.uniting import merge_results
 
 __all__ = [
     "Division",
@@ -16,6 +17,7 @@ __all__ = [
     "array_list",
     "error_path",
     "merge",
+    "merge_results",
     "parse_shard",
     "plan_of",
     "run_shard",

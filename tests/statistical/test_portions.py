@@ -5,9 +5,9 @@ import itertools
 import pytest
 
 from goniosim.engine import join_portions, piece_rays, simulate, trace_portion
-from goniosim.engine.packing import pack
 from goniosim.scene import with_arguments
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+from sameness import content
 
 METAL = [dielectric(1.5, 0.3), medium([0.05, 0.1, 0.8]), conductor(1.45, [1.0, 0.5, 0.5], 0.3)]
 SLAB = [dielectric(1.5, 0.001), medium(0.2), dielectric(1.0, 0.3)]
@@ -31,20 +31,6 @@ def portions(scene, n, **given):
     """States of n portions of equally many pieces, or a few more or less."""
     edges = [len(piece_rays(scene)) * k // n for k in range(n + 1)]
     return [trace_portion(scene, a, b, **given)[0] for a, b in itertools.pairwise(edges) if b > a]
-
-
-def content(result):
-    """Everything but times and words, as bytes."""
-    parts = [result.rays, result.status, result.config_yaml, result.cost.rays, result.cost.error]
-    parts += [result.audit.energy, result.audit.stderr]
-    for name, component in result.components.items():
-        for one in (component, *component.orders.values()):
-            parts += [name, one.estimator, one.contains_delta]
-            arrays = (
-                getattr(one, field) for field in ("energy", "stderr", "bsdf", "bsdf_stderr", "albedo", "albedo_stderr")
-            )
-            parts += [*arrays, *(getattr(one, field) for field in ("uncertain", "hits", "batches", "node_bias"))]
-    return pack(parts)
 
 
 @pytest.fixture(scope="module")
