@@ -13,7 +13,7 @@ PAPER := out/paper
 # Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.
 WORKERS := -n auto --maxprocesses 4 --dist loadfile
 
-.PHONY: demo install lint test test-all bench headline accuracy cluster-overhead honesty paper paper-report clean
+.PHONY: demo install lint test test-all test-cluster bench headline accuracy cluster-overhead honesty paper paper-report clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -36,10 +36,15 @@ $(LINTERS): $(STAMP)
 	touch $@
 
 test: $(STAMP)
-	$(BIN)/python -m pytest $(WORKERS) -m "not slow"
+	$(BIN)/python -m pytest $(WORKERS) -m "not slow and not cluster"
 
 test-all: $(STAMP)
-	$(BIN)/python -m pytest $(WORKERS)
+	$(BIN)/python -m pytest $(WORKERS) -m "not cluster"
+
+# On a Slurm of one node, which is installed if there is none, and started by the tests for themselves.
+test-cluster: $(STAMP)
+	tests/cluster/install
+	$(BIN)/python -m pytest tests/cluster -m cluster
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py

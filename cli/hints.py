@@ -10,7 +10,12 @@ COMMANDS = {
     "simulate": "run render sim trace measure start go",
     "check": "validate lint verify test predict estimate dryrun",
     "cost": "price prices pricelist accuracy budget",
-    "info": "ls list inspect describe stat status summary print cat",
+    "plan": "schedule array shards",
+    "submit": "sbatch qsub slurm batch launch",
+    "status": "stat progress queue squeue jobs",
+    "merge": "join reduce combine concatenate gather",
+    "warmup": "compile precompile warm cache",
+    "info": "ls list inspect describe summary print cat",
     "plot": "view show display draw figure figures picture image open",
     "compare": "evaluate eval diff benchmark rank error errors report",
     "models": "model",
@@ -23,7 +28,10 @@ OPTIONS = {
     "--target": "tolerance tol rtol error maxerror relativeerror targeterror accuracy noise epsilon eps",
     "--of": "metric norm quantity",
     "--max-rays": "maxsamples maxspp raylimit",
-    "--max-time": "timeout timelimit time budget timebudget maxseconds walltime",
+    "--max-time": "timeout timelimit time budget timebudget maxseconds",
+    "--walltime": "timeout timelimit time",
+    "--shards": "tasks jobs array chunks",
+    "--cpus": "cpuspertask cores threads ncpus",
     "--estimator": "method integrator algorithm e",
     "--threads": "nthreads numthreads workers cores jobs j t cpus processes",
     "--output": "out outfile outputfile outdir outputdir dir folder output",
@@ -44,6 +52,9 @@ OPTIONS = {
 EXPLAINED = {
     **dict.fromkeys(("gpu", "cuda", "device"), "not available: rays are traced by the processor"),
     **dict.fromkeys(("resume", "continue"), "a study goes on where it stopped: run the same command again"),
+    **dict.fromkeys(
+        ("partition", "account", "qos", "mem", "constraint"), "options of sbatch stand behind --: -- --partition=long"
+    ),
     **dict.fromkeys(("export", "convert"), "not available: results are HDF5 files, described in data_schema.md"),
     **dict.fromkeys(("config", "scene", "file", "input", "i"), "name the file behind the command, without an option"),
     "phi": "not available: layers look the same from every azimuth, and the light stands at phi = 0",
@@ -108,7 +119,7 @@ class HintingGroup(click.Group):
             homes = [name for name, command in self.commands.items() if option in _options(command)]
             if homes:
                 place = "stands behind" if error.ctx.command is self else "belongs to"
-                return f"{option} {place} goniosim {' and '.join(homes)}"
+                return f"{option} {place} goniosim {' and '.join(filter(None, [', '.join(homes[:-1]), homes[-1]]))}"
         return None
 
 

@@ -283,36 +283,42 @@ def _simulate(job, label, progress, signals, overwrite, anew, every):
     from goniosim.engine import simulate
     from goniosim.store import keeper
 
-    resume = None if anew else _left(job, progress)
+    left = {} if anew else _left(job, progress)
+    goes_on = bool(left)
 
     def report(done_rays, total_rays):
         if not signals.gathering:
-            progress.begin(label, inherited=0 if resume is None else done_rays)
+            progress.begin(label, inherited=done_rays if goes_on else 0)
             signals.gathering = True
         progress.update(done_rays, total_rays)
 
     keep = keeper(job.path, overwrite, lambda error: progress.note(f"{label}: no checkpoint: {error}"))
-    return simulate(job.scene, progress=report, stop=signals.event, checkpoint=keep, every=every, resume=resume)
+    left["note"] = lambda line: progress.note(f"{job.path}: {line}")
+    return simulate(job.scene, progress=report, stop=signals.event, checkpoint=keep, every=every, **left)
 
 
 def _left(job, progress):
-    """What an interrupted run goes on from, with a word on it; None if there is nothing, or it cannot."""
-    from goniosim.engine import checked_state
+    """What a run goes on from, as `goniosim.engine.simulate` takes it, with a word on it; empty if there is nothing."""
+    from goniosim.engine import checked_state, prior_of
     from goniosim.report.text import counts
-    from goniosim.store import state_left
+    from goniosim.store import result_left, state_left
 
+    found, rays = {}, None
     try:
         if left := state_left(job.path, job.scene):
             state, rays = left
             checked_state(state)
-            progress.note(f"{job.path}: goes on from {counts(rays)} rays per direction")
-            return state
+            found = {"resume": state}
+        elif result := result_left(job.path, job.scene):
+            found, rays = {"prior": prior_of(job.scene, result)}, result.rays
     except UnusableResultError as error:
         progress.note(f"{job.path}: begins anew: {error}")
     except GoniosimError:
         # Whatever it is, `sort_out` has spoken of it.
         pass
-    return None
+    if found:
+        progress.note(f"{job.path}: goes on from {counts(rays)} rays per direction")
+    return found
 
 
 def prepare_kernels(scene, progress):

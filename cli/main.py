@@ -9,11 +9,15 @@ from .info import info
 from .init import init
 from .merge import merge
 from .models import models
+from .plan import plan
 from .plot import plot
 from .policy import PolicyGroup, debug_option
 from .schema import schema
 from .simulate import simulate
+from .status import status
+from .submit import submit
 from .versions import versions
+from .warmup import warmup
 
 
 def _show_version(ctx, param, value):
@@ -64,5 +68,10 @@ def main():
     """A virtual goniometer: BRDF and BTDF slices of layered materials by Monte Carlo."""
 
 
-for command in (init, simulate, merge, check, cost, info, plot, compare, models, schema, versions):
+COMMANDS = (
+    *(init, simulate, check, cost, info, plot, compare, models),
+    *(plan, submit, status, merge, warmup),
+    *(schema, versions),
+)
+for command in COMMANDS:
     main.add_command(command)

@@ -116,7 +116,12 @@ PATHS = {"target": "target.relative_error", "of": "target.of"}
 
 def simulation_options(command):
     """Add the options that stand for values under ``simulation``, for `overrides_of`."""
-    for option in reversed(SIMULATION_OPTIONS):
+    return with_options(command, SIMULATION_OPTIONS)
+
+
+def with_options(command, options):
+    """Add options to a command, in this order."""
+    for option in reversed(options):
         command = option(command)
     return command
 
@@ -134,7 +139,8 @@ def overrides_of(given):
     ]
 
 
-SIMULATION_OPTIONS = (
+# What is to be traced, whatever it is traced on.
+MEASURE_OPTIONS = (
     click.option("--rays", type=Count(), metavar="N", help="Rays per incident direction, such as 1e7."),
     click.option(
         "--target",
@@ -155,6 +161,9 @@ SIMULATION_OPTIONS = (
         help="Time per material at most, with a target: seconds, or 90s, 10m, 2h or 1h30m.",
     ),
     click.option("--estimator", type=click.Choice(ESTIMATORS), help="How to estimate [default: auto]."),
+)
+SIMULATION_OPTIONS = (
+    *MEASURE_OPTIONS,
     click.option("--threads", type=click.IntRange(min=1), metavar="T", help="Threads; all cores by default."),
 )
 set_option = click.option(

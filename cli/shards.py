@@ -5,8 +5,41 @@ from dataclasses import replace
 from pathlib import Path
 
 from .jobs import prepare_kernels
+from .options import overrides_of
 from .policy import say
 from .signals import StopSignals
+
+
+def load(config, overrides, asked):
+    """What a scene or study file describes with the changes of the command line, or the plan of a folder.
+
+    Parameters
+    ----------
+    config : str
+    overrides : list of goniosim.scene.Override
+    asked : dict
+        For `options.overrides_of`.
+
+    Returns
+    -------
+    goniosim.scene.Config
+
+    Raises
+    ------
+    ConfigError
+        Also for changes of what is planned.
+    """
+    from goniosim.cluster import ShardPlan
+    from goniosim.errors import ConfigError
+    from goniosim.scene import Config, load_config, with_arguments
+
+    if not Path(config).is_dir():
+        return load_config(config, [*overrides, *overrides_of(asked)])
+    plan = ShardPlan.read(config)
+    if changes := [*overrides, *overrides_of({**asked, "threads": None})]:
+        raise ConfigError(f"{config}: {changes[0].shown}: what is planned cannot be changed; make another plan")
+    scenes = [with_arguments(scene, {"threads": asked.get("threads")}) for scene in plan.scenes]
+    return Config(scenes, plan.study)
 
 
 def only(described, names):

@@ -53,15 +53,15 @@ def simulate(
     """Simulate a scene or study file and write the result.
 
     CONFIG is the file, or - for the standard input. A study writes one file per material into a folder.
-    A file that holds the rays or the accuracy asked for, or more, stays as it is; one with less is
-    replaced; the result of another scene is an error. Ctrl-C, a signal of a batch system or --time-limit
+    A file that holds the rays or the accuracy asked for, or more, stays as it is; one with less goes
+    on from what it holds; the result of another scene is an error. Ctrl-C, a signal of a batch system or --time-limit
     stop within two seconds and keep what was gathered, marked as partial: the same command goes on from
     there, to the same numbers as without the interruption. A target that --max-rays or --max-time cut
     short leaves a result, and exit code 9.
 
     With --shard the folder OUT takes one share of the work, for `goniosim merge` to join with the others. In a task
     of a Slurm array auto/16 takes the number from SLURM_ARRAY_TASK_ID; the count may be left out where OUT holds
-    the plan of `goniosim plan`.
+    the plan of `goniosim plan`, and then CONFIG may be that folder too.
 
     With --dask the work is cut into shards too, which lie in OUT.shards until all are traced and merged into OUT. The
     workers have to see that folder. Each shard takes one thread, or as many as --threads says.
@@ -84,14 +84,16 @@ def simulate(
 
     from . import jobs, shards, spreading
 
-    described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     if shard is not None:
         if dask is not None:
             raise click.UsageError("--dask traces all shards: leave out --shard")
         if overwrite:
             raise click.UsageError("--overwrite does not go with --shard: remove what is to be made anew")
+        described = shards.only(shards.load(config, overrides, asked), only)
+        home = output or (config if Path(config).is_dir() else None)
         times = seconds_of(time_limit), seconds_of(checkpoint)
-        ctx.exit(shards.trace(described, shard, output, *times, quiet, verbose))
+        ctx.exit(shards.trace(described, shard, home, *times, quiet, verbose))
+    described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)
     place = planned[0].path.parent if many else planned[0].path

@@ -58,10 +58,11 @@ class Component:
         an unbiased estimate, and their mean is the sum of ``energy`` over the block. Tells the errors of sums over
         cells where paths are not independent; 0 in directions of ``analog``, whose covariance is known, and None if
         there are no others.
+    paths, replicates : ndarray of int64, shape (M,), or None
+        Light paths, `Result.rays` or more, and replicates where there are `batches`. None before schema 1.4.
     contains_delta : bool
-        Whether some of the energy leaves in exactly one direction (a chain of
-        smooth interfaces); the BSDF of the cell that holds that direction is
-        then a cell average of a Dirac delta.
+        Whether some of the energy leaves in exactly one direction (a chain of smooth interfaces); the BSDF of the cell
+        that holds that direction is then a cell average of a Dirac delta.
     orders : dict of str to Component
         Decomposition by the number of events on the top interface:
         ``order_2``, ``order_3``, ..., ``order_N_and_more``. Empty unless asked for.
@@ -80,6 +81,8 @@ class Component:
     estimator: list[str] = field(default_factory=list)
     node_bias: np.ndarray | None = None
     batches: np.ndarray | None = None
+    paths: np.ndarray | None = None
+    replicates: np.ndarray | None = None
 
     @property
     def sampled(self) -> bool:
@@ -140,12 +143,15 @@ class Audit:
     direct_integrated, direct_integrated_stderr : ndarray, shape (M, C)
         Energy of the direct reflection by integration over the cells, to be
         compared with the sampled ``reflected_direct``.
+    rays : ndarray of int64, shape (M,), or None
+        Independent paths that the sampled entries rest on. None before schema 1.4.
     """
 
     energy: dict[str, np.ndarray]
     stderr: dict[str, np.ndarray]
     direct_integrated: np.ndarray
     direct_integrated_stderr: np.ndarray
+    rays: np.ndarray | None = None
 
     @property
     def residual(self) -> np.ndarray:

@@ -182,8 +182,10 @@ def _component(path, rng, cells, channels, rays, orders, estimator):
         orders=parts,
         estimator=[estimator if sampled else INTEGRATED] * len(hits),
     )
+    if sampled:
+        made.paths = np.full(len(hits), rays)
     if sampled and estimator != "analog":
-        made.node_bias = np.full(len(hits), 1e-6)
+        made.node_bias, made.replicates = np.full(len(hits), 1e-6), np.full(len(hits), BATCHES)
         made.batches = _batches(energy)
     fill(made, rays)
     return made
@@ -217,7 +219,9 @@ def _audit(rng, totals, shape, rays):
     energy["lost_masked_reflection"] = rng.uniform(0, 0.01, shape)
     energy["absorbed_base"] = 1 - sum(energy.values())
     stderr = {entry: np.sqrt(np.abs(value) / rays) for entry, value in energy.items()}
-    return Audit(energy, stderr, totals.get("reflection/direct", np.zeros(shape)), np.full(shape, 1e-9))
+    return Audit(
+        energy, stderr, totals.get("reflection/direct", np.zeros(shape)), np.full(shape, 1e-9), np.full(shape[0], rays)
+    )
 
 
 def _cost(components, directions, rays):

@@ -112,7 +112,7 @@ def trace(scene: Scene, label: str, shown: Any, asked: Stop, **kept: Any) -> Res
         nonlocal began
         if not began:
             began = asked.gathering = True
-            shown.begin(label, inherited=0 if kept.get("resume") is None else done_rays)
+            shown.begin(label, inherited=done_rays if {"resume", "prior"} & kept.keys() else 0)
         shown.update(done_rays, total_rays)
 
     result: Result = engine.simulate(scene, progress=report, stop=asked, **kept)

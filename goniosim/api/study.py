@@ -13,7 +13,7 @@ from ..errors import FewerRaysError, GoniosimError, OutputError, StoppedError
 from ..result import Result
 from ..scene import Scene, Source, as_scenes, total_rays, with_arguments
 from ..sharing import Sharing
-from ..store import keeper, look_at, reserve_output, state_left, write_result
+from ..store import keeper, look_at, reserve_output, result_left, state_left, write_result
 from ..writing import StrPath, make_folder
 from .progress import Progress, progress_of
 from .simulation import check_stop, trace
@@ -96,9 +96,10 @@ def simulate_study(
         What `load_scenes` takes, or scenes.
     folder : path-like, optional
         Write each result into ``NAME.h5`` there as soon as it is done, instead of keeping all in memory.
-        Files that hold the rays or the accuracy asked for, or more, are left alone, and the one that was at work goes
-        on from its last checkpoint, a minute ago at most: calling again goes on. Processes that simulate into one
-        folder share the materials, and each leaves out those that others are at work on.
+        Files that hold the rays or the accuracy asked for, or more, are left alone; those with less go on from what
+        they hold, and the one that was at work from its last checkpoint, a minute ago at most: calling again goes on.
+        Processes that simulate into one folder share the materials, and each leaves out those that others are at work
+        on.
     overwrite : bool
         Leave no file alone: simulate all anew, and replace whatever results stand there.
     rays, seed, threads, estimator, target, of, max_rays, max_time, progress, stop
@@ -221,8 +222,8 @@ def _into_file(
     # What others left of it since is no result to be replaced.
     anew = overwrite and sharing.is_untouched(scene)
     with reserve_output(path, file_size(scene)) as reservation:
-        kept = {"checkpoint": keeper(path, overwrite), "resume": None if anew else _left(path, scene)}
-        result = trace(scene, label, shown, asked, **kept)
+        left = {} if anew else _left(path, scene)
+        result = trace(scene, label, shown, asked, checkpoint=keeper(path, overwrite), **left)
         # Ended early it may have fewer rays than an earlier file, which then stays.
         with suppress(FewerRaysError):
             write_result(result, path, overwrite=overwrite, reservation=reservation)
@@ -236,17 +237,19 @@ def _is_done(paths: Mapping[str, Path], overwrite: bool, scene: Scene, untouched
     return found is not None and found.holds(scene.simulation)
 
 
-def _left(path: Path, scene: Scene) -> bytes | None:
-    """What an interrupted run goes on from; None if there is nothing of it, or of another version."""
-    from ..engine import checked_state
+def _left(path: Path, scene: Scene) -> dict[str, Any]:
+    """What a run goes on from, as the engine takes it; empty if there is nothing of it, or of another version."""
+    from ..engine import checked_state, prior_of
 
     try:
         if left := state_left(path, scene):
             checked_state(left[0])
-            return left[0]
+            return {"resume": left[0]}
+        if result := result_left(path, scene):
+            return {"prior": prior_of(scene, result)}
     except GoniosimError:
         pass
-    return None
+    return {}
 
 
 def _finished(scenes: Iterable[Scene], paths: Mapping[str, Path]) -> list[str]:

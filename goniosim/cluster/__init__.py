@@ -7,6 +7,7 @@ from goniosim.cluster.shard import array_list, parse_shard
 from goniosim.cluster.spreading import remove_shards, shards_folder, spread
 from goniosim.cluster.standing import Standing, State, standing_of
 from goniosim.cluster.tracing import error_path, run_shard
+from goniosim.cluster.uniting import merge_results
 
 __all__ = [
     "Division",
@@ -17,6 +18,7 @@ __all__ = [
     "array_list",
     "error_path",
     "merge",
+    "merge_results",
     "parse_shard",
     "plan_of",
     "remove_shards",

@@ -75,8 +75,7 @@ def merge(
     for task, there in lacking.items():
         what = "used as far as it goes" if there.state is State.PARTIAL else "left out"
         note(f"{what}: {_line(task, there, folder)}")
-    if plan.study is not None:
-        make_folder(out)
+    make_folder(out if plan.study is not None else Path(out).parent)
     words = f"{len({task.shard for task in tasks})} shards"
     if lacking:
         words += f", of which {array_list([task.shard for task in lacking])} are missing or not finished"

@@ -153,11 +153,11 @@ def _trace_portion(task: Task, scene: Scene, folder: StrPath, note: Callable[[st
             note(f"no checkpoint: {error}")
 
     try:
-        found = trace_portion(scene, task.first, task.end, checkpoint=checkpoint, resume=resume, **given)
+        state, done, total = trace_portion(scene, task.first, task.end, checkpoint=checkpoint, resume=resume, **given)
     except UnusableResultError as error:
         # No accident: its digests were right.
         raise UnusableResultError(f"{path}: {error}; remove it, to begin anew") from error
-    return keep(*found, rescued=True)
+    return keep(state, done, total, rescued=True)
 
 
 def _left(path: Path, note: Callable[[str], object]) -> tuple[bytes | None, int]:
@@ -185,7 +185,11 @@ def _trace_result(task: Task, scene: Scene, folder: StrPath, note: Callable[[str
             resume = left[0]
         except UnusableResultError as error:
             note(f"{path}: begins anew: {error}")
-    keep = keeper(path, failed=lambda error: note(f"no checkpoint: {error}"))
+
+    def failed(error: OutputError) -> None:
+        note(f"no checkpoint: {error}")
+
+    keep = keeper(path, failed=failed)
     result = simulate(scene, checkpoint=keep, resume=resume, **given)
     with contextlib.suppress(FewerRaysError):
         write_result(result, path)

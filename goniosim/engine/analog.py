@@ -218,7 +218,7 @@ class AnalogRun:
         total, squares, hits = moments(self.tallies[direction].histogram, self._plan, first, count)
         energy, stderr = mean_and_error(total, squares, rays)
         _, total_stderr = sum_and_error(energy, stderr, Paths(energy, rays))
-        return Estimate(energy, stderr, total_stderr, rays, hits)
+        return Estimate(energy, stderr, total_stderr, rays, hits, paths=rays)
 
 
 class SectionOfUnits:

@@ -28,10 +28,20 @@ def components(plan, runs, direct):
     for side in sorted(run_of):
         name, delta = COMPONENT_OF[side], plan.has_specular_chain(side)
         found[name] = _component(plan, run_of[side], side, None, delta)
-        count, lowest = int(plan.slots[side, 1]), int(plan.slots[side, 2])
-        for order in range(count) if plan.orders else ():
-            label = f"order_{lowest + order}" + ("_and_more" if order == count - 1 else "")
+        for order, label in enumerate(order_labels(plan)[name]):
             found[name].orders[label] = _component(plan, run_of[side], side, order, delta)
+    return found
+
+
+def order_labels(plan):
+    """Names of the orders of each component that is sampled, dict of str to tuple of str."""
+    found = {}
+    for side, name in COMPONENT_OF.items():
+        count, lowest = int(plan.slots[side, 1]), int(plan.slots[side, 2])
+        numbers = range(lowest, lowest + count - 1) if plan.orders else ()
+        last = (f"order_{lowest + count - 1}_and_more",) if plan.orders else ()
+        if count:
+            found[name] = (*(f"order_{number}" for number in numbers), *last)
     return found
 
 
@@ -40,14 +50,16 @@ def _component(plan, run, side, order, delta):
     return assemble(plan, estimates, run.name, delta)
 
 
-def cost(plan, runs):
+def cost(plan, runs, before=None):
     """What accuracy cost, for each direction at its checkpoints.
 
     Parameters
     ----------
     plan : goniosim.engine.plan.Plan
-    runs : list of AnalogRun or ReplicatedRun
+    runs : list of AnalogRun or ReplicatedRun or Extended
         With different ways out.
+    before : goniosim.result.Cost, optional
+        Of what there was before the runs.
 
     Returns
     -------
@@ -59,15 +71,42 @@ def cost(plan, runs):
     rays, cpu_seconds, elapsed, error = np.zeros(shape), np.zeros(shape), np.zeros(most), {}
     for run in runs:
         # A direction that was through earlier, or never begun, stays as it was.
-        nothing = [(0, 0.0, 0.0, dict.fromkeys((COMPONENT_OF[side] for side in run.sides), 0.0))]
-        kept = [noted + (noted or nothing)[-1:] * (most - len(noted)) for noted in run.spending.checkpoints]
+        names = [COMPONENT_OF[side] for side in run.sides]
+        for name in names:
+            error[name] = np.zeros(shape) if before is None else np.tile(before.error[name][:, -1:], most)
+        nothing = (0, 0.0, 0.0, None)
+        kept = [noted + (noted or [nothing])[-1:] * (most - len(noted)) for noted in run.spending.checkpoints]
         for m, rows in enumerate(kept):
             rays[m] = np.maximum(rays[m], [row[0] for row in rows])
             cpu_seconds[m] += [row[1] for row in rows]
-            for name in rows[0][3]:
-                error.setdefault(name, np.zeros(shape))[m] = [row[3][name] for row in rows]
+            for name in names if run.spending.checkpoints[m] else ():
+                error[name][m] = [row[3][name] for row in rows]
         elapsed += np.max([[row[2] for row in rows] for rows in kept], axis=0)
-    return Cost(rays, shared_seconds(elapsed, cpu_seconds), cpu_seconds, error)
+    return after(before, Cost(rays, shared_seconds(elapsed, cpu_seconds), cpu_seconds, error))
+
+
+def after(before, found):
+    """Costs that go on from others, if there are any.
+
+    Parameters
+    ----------
+    before : goniosim.result.Cost or None
+    found : goniosim.result.Cost
+        Its errors are those with what was there before.
+
+    Returns
+    -------
+    goniosim.result.Cost
+    """
+    if before is None:
+        return found
+
+    def summed(name):
+        held, added = getattr(before, name), getattr(found, name)
+        return np.concatenate([held, held[:, -1:] + added], axis=1)
+
+    error = {name: np.concatenate([before.error[name], added], axis=1) for name, added in found.error.items()}
+    return Cost(summed("rays"), summed("seconds"), summed("cpu_seconds"), error)
 
 
 def errors(plan, run, direction):
@@ -83,7 +122,8 @@ def worst_error(plan, run, direction, of):
         one = run.estimate(side, direction)
         total = one.energy.sum(axis=(1, 2)), one.total_stderr
         found.append(bound(of, one.energy, one.stderr, total, size, weights, one.noise, one.bias))
-    return max(found)
+    # Nothing but the direct reflection may leave.
+    return max(found, default=0.0)
 
 
 def floor(plan, run, direction):

@@ -5,6 +5,8 @@ import threading
 import time
 from collections import deque
 
+import numpy as np
+
 from .journal import Journal
 from .ordered import in_order
 from .runs import in_flight
@@ -140,6 +142,8 @@ class Drive:
             Whether all directions of all runs were reached.
         """
         turn, number, missed = [(run, list(range(len(run.rays)))) for run in runs], 0, False
+        if limit.begun:
+            turn, missed = _judged(turn, judge)
         while turn:
             waiting, turn = deque(turn), []
             while waiting:
@@ -156,12 +160,18 @@ class Drive:
                     waiting.append((other, directions))
                     continue
                 limit.took(run, seconds, len(directions) * run.rays_of_round(number))
-                verdicts = {m: judge(run, m) for m in directions}
-                missed |= None in verdicts.values()
-                if False in verdicts.values():
-                    turn.append((run, [m for m in directions if verdicts[m] is False]))
+                left, hopeless = _judged([(run, directions)], judge)
+                missed |= hopeless
+                turn += left
             number += 1
         return not missed
+
+
+def _judged(turn, judge):
+    """Directions of each run that are not yet as accurate as asked for, and whether some will never be."""
+    verdicts = [(run, {m: judge(run, m) for m in directions}) for run, directions in turn]
+    left = [(run, [m for m, verdict in found.items() if verdict is False]) for run, found in verdicts]
+    return [each for each in left if each[1]], any(None in found.values() for _, found in verdicts)
 
 
 def _remember(noted, one):
@@ -188,10 +198,13 @@ class Limit:
     max_seconds : float or None
         Of wall-clock time of all runs together, from now on.
     journal : Journal, optional
+    begun : dict of object to ndarray, shape (M,), optional
+        By run, light paths of each direction that are there before it.
     """
 
-    def __init__(self, max_rays, max_seconds, journal=None):
+    def __init__(self, max_rays, max_seconds, journal=None, begun=None):
         self._journal = journal or Journal()
+        self.begun = begun or {}
         self._max_rays = math.inf if max_rays is None else max_rays
         self._end = math.inf if max_seconds is None else time.perf_counter() + max_seconds
         self._pace = {}
@@ -201,12 +214,16 @@ class Limit:
         self._pace[run] = seconds / paths
 
     def allows(self, run, directions, number):
-        """Whether a run may begin another round of some directions; the first one it always may."""
-        return number == 0 or self._journal.decide(lambda: self._leave_room(run, directions, number))
+        """Whether a run may begin another round of some directions; the first of all it always may."""
+        return (number == 0 and not self.begun) or self._journal.decide(
+            lambda: self._leave_room(run, directions, number)
+        )
 
     def _leave_room(self, run, directions, number):
         paths = run.rays_of_round(number)
-        predicted = self._pace[run] * len(directions) * paths
+        # Of a run that only goes on, nobody has seen a round yet.
+        predicted = self._pace.get(run, 0.0) * len(directions) * paths
+        there = self.begun.get(run, np.zeros(len(run.rays), int))
         return time.perf_counter() + predicted <= self._end and all(
-            run.rays[m] + paths <= self._max_rays for m in directions
+            there[m] + run.rays[m] + paths <= self._max_rays for m in directions
         )

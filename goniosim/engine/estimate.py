@@ -117,6 +117,8 @@ class Estimate:
         See `goniosim.result.Component.batches`.
     bias : float or None
         What nodes may be off by, in sr^-1/2.
+    paths : int or None
+        Light paths; None if it is integrated.
     """
 
     energy: np.ndarray
@@ -126,6 +128,7 @@ class Estimate:
     hits: np.ndarray | None = None
     batches: np.ndarray | None = None
     bias: float | None = None
+    paths: int | None = None
 
     @property
     def noise(self):
@@ -171,6 +174,9 @@ def assemble(plan, estimates, estimator, contains_delta):
             _put(found, "hits", m, one.hits.astype(np.int64))
         if one.batches is not None:
             _put(found, "batches", m, one.batches[:, plan.position])
+            _put(found, "replicates", m, np.int64(one.count))
+        if one.paths is not None:
+            _put(found, "paths", m, np.int64(one.paths))
         if one.bias is not None:
             _put(found, "node_bias", m, np.float64(one.bias))
     return found
@@ -205,6 +211,7 @@ def audit(plan, ledgers, part_rays, direct):
         stderr={name: stderr[i][:, plan.position] for i, name in enumerate(AUDIT_ENTRIES)},
         direct_integrated=direct.albedo,
         direct_integrated_stderr=direct.albedo_stderr,
+        rays=np.array([sum(sizes) for sizes in part_rays], np.int64),
     )
 
 

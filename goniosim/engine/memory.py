@@ -212,28 +212,32 @@ def _thresholds(plan):
     return 2 * len(plan.kinds) * plan.n_distinct * _NUMBER
 
 
-def require_memory(scene):
+def require_memory(scene, besides=0):
     """Make sure that the simulation of a scene fits into the memory that is free.
 
     Parameters
     ----------
     scene : goniosim.scene.Scene
+    besides : int
+        Bytes that this process holds all the time for something else.
 
     Raises
     ------
     ResourceError
         With the numbers, and what would help.
     """
-    if short := shortage(scene):
+    if short := shortage(scene, besides):
         raise ResourceError(f"{scene.material.name}: not enough memory: {short}")
 
 
-def shortage(scene):
+def shortage(scene, besides=0):
     """Say what is missing for the simulation of a scene, and what would help.
 
     Parameters
     ----------
     scene : goniosim.scene.Scene
+    besides : int
+        As for `require_memory`.
 
     Returns
     -------
@@ -244,7 +248,7 @@ def shortage(scene):
     if free is None:
         return None
     # What this process holds already is part of the need.
-    room = free[0] + resident_memory()
+    room = free[0] + resident_memory() - besides
     plan, simulation, threads = make_plan(scene), scene.simulation, threads_of(scene)
     needed = _needed(plan, simulation, threads)
     if needed.peak <= room:

@@ -8,6 +8,7 @@ from ..provenance import provenance
 from ..result import Result
 from ..scene import CHANNELS, effects
 from . import assembly, estimate
+from .combining import combined_audits
 from .direct import direct_reflection
 
 
@@ -29,7 +30,7 @@ def result_of(scene, plan, threads, direct, session, state=None):
     -------
     goniosim.result.Result
     """
-    found = assembly.components(plan, session.runs, direct)
+    found, prior = assembly.components(plan, session.known, direct), session.prior
     return Result(
         config_yaml=scene.to_yaml(),
         config_hash=scene.config_hash(),
@@ -42,13 +43,21 @@ def result_of(scene, plan, threads, direct, session, state=None):
         channels=list(CHANNELS),
         cells=estimate.cells(plan),
         components=found,
-        audit=estimate.audit(plan, session.audit.ledgers, session.audit.part_rays, found["reflection/direct"]),
-        cost=assembly.cost(plan, session.runs),
+        audit=_balance(plan, session, found["reflection/direct"]),
+        cost=assembly.cost(plan, session.known, prior and prior.cost),
         effects={effect.name: effect.active for effect in effects(scene)},
         provenance={**provenance(threads), **session.provenance},
         target_reached=session.reached,
         state=None if session.finished else state,
     )
+
+
+def _balance(plan, session, direct):
+    before, run = session.prior and session.prior.audit, session.audit
+    if run is None:
+        return before
+    found = estimate.audit(plan, run.ledgers, run.part_rays, direct)
+    return combined_audits(before, found) if before else found
 
 
 def progress_of(scene, progress):

@@ -214,7 +214,8 @@ class ReplicatedRun:
         view, sums = self._place[side, order], self._sums[direction]
         energy, stderr = sums.slices(view)
         bias = self.bias.get(direction) if order is None else None
-        return Estimate(energy, stderr, sums.total_stderr(view), sums.count, batches=sums.batches(view), bias=bias)
+        batches, paths = sums.batches(view), sums.paths
+        return Estimate(energy, stderr, sums.total_stderr(view), sums.count, batches=batches, bias=bias, paths=paths)
 
 
 def _views(plan, sides):

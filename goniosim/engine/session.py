@@ -17,19 +17,20 @@ from .analog import AnalogRun
 from .drive import Drive, Limit
 from .estimators import pilot
 from .estimators.choose import ANALOG, AUTO, Choice, choose, next_best
+from .extended import MOST_OF_TARGET, Extended, gone_on
 from .gain import gains, in_words
 from .journal import Journal
 from .packing import pack
 from .plan import Plan
+from .prior import Prior
+from .rounds import FEWEST_PATHS
 from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 from .unit import child_key
 
 # Of `Session.state`, to be raised whenever one of before would not lead to the same bits.
-VERSION = [2, version_of("goniosim")]
+VERSION = [3, version_of("goniosim")]
 # Child of the seed's key, for a run that takes the place of another.
 BRANCH = 5
-# What nodes may be off by is no more than that share of a target, or the noise would have to be less than half of it.
-MOST_OF_TARGET = 0.9
 
 
 @dataclass
@@ -48,6 +49,8 @@ class Session:
         Tells whether there is memory for what it leaves when it is stopped.
     resumed : dict, optional
         The `state` in which a session of the same simulation was interrupted.
+    prior : goniosim.engine.prior.Prior, optional
+        What is there already; the session does what is missing, on random numbers of its own.
     choices : list of goniosim.engine.estimators.choose.Choice
     runs : list of AnalogRun or ReplicatedRun
         One for each choice; of different ways out.
@@ -64,6 +67,7 @@ class Session:
     drive: Drive
     checkpoint: object = None
     resumed: dict | None = None
+    prior: Prior | None = None
     choices: list = field(default_factory=list)
     runs: list = field(default_factory=list)
     audit: AnalogRun | None = None
@@ -80,9 +84,19 @@ class Session:
     _added: int = 0
 
     @property
+    def known(self):
+        """The runs, with what there was before them."""
+        return [self._known(run) for run in self.runs]
+
+    @property
     def rays(self):
         """Light paths of each direction in all components."""
-        return np.min([run.rays for run in self.runs], axis=0) if self.runs else np.zeros(1, int)
+        return np.min([run.rays for run in self.known], axis=0) if self.runs else np.zeros(1, int)
+
+    @property
+    def traced(self):
+        """Whether there is anything to keep that was not there before."""
+        return any(self.rays) if self.prior is None else any(any(run.rays) for run in self.runs)
 
     @property
     def finished(self):
@@ -93,9 +107,10 @@ class Session:
     @property
     def provenance(self):
         """Which estimators were chosen and why, and what they gained over independent paths, in words."""
-        found = gains(self.plan, self.runs, self.audit)
+        found = gains(self.plan, self.runs, self.audit) if self.audit else {}
         gained = {"estimator_gain": f"{in_words(found)} (CPU time of analog for the same noise over that of this run)"}
-        return {"estimator_choice": "; ".join(map(str, self.choices)), **(gained if found else {})}
+        before = self.prior.provenance if self.prior else {}
+        return {**before, "estimator_choice": "; ".join(map(str, self.choices)), **(gained if found else {})}
 
     def run(self):
         """Do all runs.
@@ -104,6 +119,8 @@ class Session:
         ------
         goniosim.errors.UnusableResultError
             If it cannot go on from ``resumed``.
+        goniosim.engine.extended.OtherEstimatorError
+            If it cannot go on from ``prior``; nothing is done then.
         """
         try:
             self._run()
@@ -118,13 +135,21 @@ class Session:
         asked, before = self.simulation, self.resumed or {"journal": (), "seconds": 0.0, "done": 0}
         self._journal = Journal(before["journal"])
         self.drive.go_on(before["seconds"], before["done"])
+        if self.resumed is not None and before["prior"] is not None:
+            self.prior = Prior(self.plan, before["prior"])
         self._choose()
+        there = self._there
+        least = min((int(rays.min()) for rays in there.values()), default=0)
         if asked.target is None:
-            self.drive.expect(len(self.plan.theta_deg) * len(self.runs) * asked.rays - before["done"])
-            self._shoot(asked.rays)
+            least = min(least, asked.rays)
+            each = len(self.plan.theta_deg) * len(self.runs)
+            if self.resumed is None:
+                self.drive.go_on(0.0, each * least)
+            self.drive.expect(each * asked.rays - self.drive.done)
+            self._shoot(asked.rays - least)
         else:
             seconds = None if asked.max_time is None else asked.max_time - before["seconds"]
-            limit = Limit(asked.max_rays, seconds, self._journal)
+            limit = Limit(asked.max_rays, seconds, self._journal, there)
             self.reached = self.drive.reach(self.runs, self._judge, self._instead, limit, self._do)
         if not self.finished and self.left is None:
             # Stopped between two pieces of work.
@@ -139,7 +164,18 @@ class Session:
             if reason is not None:
                 sides = tuple(sorted(side for choice in self.choices for side in choice.sides))
                 self.choices = [Choice(ANALOG, sides, reason)]
-        self.runs = [choice.start(self.plan, asked.seed) for choice in self.choices]
+        if self.prior is not None:
+            self.choices = gone_on(self.plan, self.choices, self.prior, self.simulation)
+        self.runs = [choice.start(self.plan, self._key) for choice in self.choices]
+
+    @property
+    def _key(self):
+        return self.simulation.seed if self.prior is None else self.prior.key(self.simulation.seed)
+
+    @property
+    def _there(self):
+        """Light paths of each direction that are there before the runs, by run."""
+        return {} if self.prior is None else {run: self.prior.rays(run.sides) for run in self.runs}
 
     def _begin(self, run):
         began = self.drive.now()
@@ -149,10 +185,17 @@ class Session:
 
     def _shoot(self, rays):
         """Do all runs, round by round, so that an interruption leaves something of every component."""
-        for rounds in itertools.zip_longest(*(run.rounds(rays) for run in self.runs), fillvalue=()):
+        if rays == 0:
+            return
+        rounds_of = (run.rounds(rays if run.audits else self._sensible(rays)) for run in self.runs)
+        for rounds in itertools.zip_longest(*rounds_of, fillvalue=()):
             for run, works in zip(self.runs, rounds, strict=True):
                 if works:
                     self._do(run, works)
+
+    def _sensible(self, rays):
+        """So many light paths, or a few more, of replicates that only go on: smaller ones say less of their scatter."""
+        return max(rays, FEWEST_PATHS) if self.simulation.rays >= FEWEST_PATHS else rays
 
     def _do(self, run, works):
         """Do pieces of work, unless they were done before an interruption; returns the seconds they took."""
@@ -212,6 +255,7 @@ class Session:
             "spent": [self._spent.get(run, 0.0) for run in self.runs],
             "choices": [[choice.estimator, choice.sides, choice.reason] for choice in self.choices],
             "runs": [[run.state(direction) for direction in range(len(run.rays))] for run in self.runs],
+            "prior": None if self.prior is None else self.prior.state(),
         }
 
     def look_at(self, state):
@@ -223,7 +267,7 @@ class Session:
             As `resumed`.
         """
         self.choices = [Choice(estimator, tuple(sides), reason) for estimator, sides, reason in state["choices"]]
-        self.runs = [choice.start(self.plan, self.simulation.seed) for choice in self.choices]
+        self.runs = [choice.start(self.plan, self._key) for choice in self.choices]
         self.reached = None if self.simulation.target is None else False
         self._began = self.drive.now() - self._take_over(state)
         for run in self.runs:
@@ -239,11 +283,13 @@ class Session:
         """Fill `audit`, by a short run of its own where no other tells."""
         # Shorter, if somebody waits for an end that is none yet.
         rays = AUDIT_RAYS if self.finished else LEAST_AUDIT_RAYS
-        self.audit = next((run for run in self.runs if run.audits), None) or self._audited(rays)
+        self.audit = next((run for run in self.runs if run.audits), None)
+        if self.audit is None and (self.prior is None or self.prior.audit.rays.min() < rays):
+            self.audit = self._audited(rays)
 
     def _audited(self, rays):
         """Where all energy goes, by an analog run that has no slices."""
-        run = AnalogRun(self.plan.in_one_cell(), self.simulation.seed)
+        run = AnalogRun(self.plan.in_one_cell(), self._key)
         run.prepare()
         for works in run.rounds(min(self.simulation.most_rays, rays)):
             self.drive.do(run, works, stop=threading.Event())
@@ -256,20 +302,27 @@ class Session:
 
     def _note(self, run, direction):
         seconds = self.drive.now() - self._from
-        run.spending.note(direction, run.rays[direction], seconds, assembly.errors(self.plan, run, direction))
+        errors = assembly.errors(self.plan, self._known(run), direction)
+        run.spending.note(direction, run.rays[direction], seconds, errors)
+
+    def _known(self, run):
+        return run if self.prior is None else Extended(run, self.prior)
 
     def _judge(self, run, direction):
         """Whether a direction is as accurate as asked for; None if its nodes will not let it be."""
         return self._journal.decide(lambda: self._verdict(run, direction))
 
     def _verdict(self, run, direction):
-        target = self.simulation.target
+        target, run = self.simulation.target, self._known(run)
         if assembly.worst_error(self.plan, run, direction, target.of) <= target.relative_error:
             return True
         return None if assembly.floor(self.plan, run, direction) >= target.relative_error else False
 
     def _instead(self, run):
         """The next best run for what one cannot reach, because of its nodes; it has a key of its own."""
+        if self.prior is not None:
+            # What there is told of its nodes before.
+            return None
         number, reason = self.runs.index(run), self._journal.decide(lambda: self._why_not(run))
         if reason is None:
             return None

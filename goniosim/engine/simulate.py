@@ -2,6 +2,7 @@
 
 import contextlib
 import threading
+from functools import partial
 
 from ..cores import granted_threads
 from ..errors import ResourceError, StoppedError, UnusableResultError
@@ -9,6 +10,7 @@ from ..scene import with_arguments
 from .blas import one_thread
 from .checkpoints import Checkpoints
 from .drive import Drive
+from .extended import OtherEstimatorError
 from .memory import memory_needed, require_memory, threads_of
 from .outcome import has_room, integrate_direct, progress_of, result_of
 from .packing import pack, unpack
@@ -17,7 +19,18 @@ from .probe import warm_up
 from .session import VERSION, Session
 
 
-def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, resume=None, **given):
+def simulate(
+    scene,
+    *,
+    progress=None,
+    stop=None,
+    checkpoint=None,
+    every=60.0,
+    resume=None,
+    prior=None,
+    note=lambda line: None,
+    **given,
+):
     """Shoot rays at a scene and return its slices with their error bars.
 
     Parameters
@@ -36,6 +49,11 @@ def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, re
     resume : bytes-like, optional
         ``state`` of a partial result of the same scene and simulation, to go on from. What comes out then is the same
         to the last bit as without the interruption, times aside.
+    prior : goniosim.engine.prior.Prior, optional
+        What is there already, of other random numbers: only what is missing is traced, and the result is of both. If
+        ``resume`` is of such a run, it knows its own.
+    note : callable
+        Called with a line if it cannot go on from ``prior``, and begins anew.
     **given
         In the place of what the scene says: ``rays``, ``seed``, ``threads`` and the others of
         `goniosim.scene.with_arguments`. The result does not depend on ``threads``; the default
@@ -57,9 +75,15 @@ def simulate(scene, *, progress=None, stop=None, checkpoint=None, every=60.0, re
         If ``resume`` is not such a state.
     """
     scene = with_arguments(scene, given)
-    require_memory(scene)
+    require_memory(scene, 0 if prior is None else prior.size)
     with guarded():
-        return _simulate(scene, progress, stop or threading.Event(), checkpoint, every, resume)
+        before = None if resume is None else checked_state(resume)
+        begin = partial(_simulate, scene, progress, stop or threading.Event(), checkpoint, every, before)
+        try:
+            return begin(prior)
+        except OtherEstimatorError as error:
+            note(f"begins anew: {error}")
+            return begin(None)
 
 
 @contextlib.contextmanager
@@ -101,26 +125,31 @@ def checked_state(state):
     return found
 
 
-def _simulate(scene, progress, stop, checkpoint, every, resume):
-    before = None if resume is None else checked_state(resume)
+def _simulate(scene, progress, stop, checkpoint, every, before, prior):
     plan, threads = make_plan(scene), granted_threads(threads_of(scene))
     warm_up(scene)
     direct = integrate_direct(plan, threads, stop)
 
     needed = memory_needed(scene)
 
+    def besides(session):
+        # In the state and in the file of it.
+        return 0 if session.prior is None else 2 * session.prior.size
+
     def keep(session):
-        if not has_room(needed.checkpoint):
+        if not has_room(needed.checkpoint + besides(session)):
             return
         looked_at = Session(plan, scene.simulation, Drive(1, threading.Event(), lambda done, total: None))
+        looked_at.prior = session.prior
         looked_at.look_at(session.state())
-        if any(looked_at.rays):
+        if looked_at.traced:
             checkpoint(result_of(scene, plan, threads, direct, looked_at, pack(session.state())))
 
     keeping = None if checkpoint is None else Checkpoints(every, keep)
-    session = Session(plan, scene.simulation, Drive(threads, stop, progress_of(scene, progress)), keeping, before)
-    session.has_room = lambda: has_room(needed.state + needed.result + needed.file)
+    drive = Drive(threads, stop, progress_of(scene, progress))
+    session = Session(plan, scene.simulation, drive, keeping, before, prior)
+    session.has_room = lambda: has_room(needed.state + needed.result + needed.file + besides(session))
     session.run()
-    if not any(session.rays):
+    if not session.traced and not (session.prior and session.finished):
         raise StoppedError("stopped before the first rays were through: there is nothing to keep")
     return result_of(scene, plan, threads, direct, session, session.left)

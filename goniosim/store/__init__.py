@@ -8,7 +8,7 @@ from goniosim.store.models import ModelsFile, ModelsWriter, is_models_file, may_
 from goniosim.store.output import Reservation, reserve_output
 from goniosim.store.portion import Portion, read_portion, write_portion
 from goniosim.store.reader import open_result, read_header, read_scene, read_state
-from goniosim.store.resuming import keeper, state_left
+from goniosim.store.resuming import keeper, result_left, state_left
 from goniosim.store.saving import write_result
 from goniosim.store.size import predicted_size
 
@@ -32,6 +32,7 @@ __all__ = [
     "read_state",
     "refuse_newer",
     "reserve_output",
+    "result_left",
     "state_left",
     "to_datatree",
     "write_portion",

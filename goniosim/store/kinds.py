@@ -37,7 +37,7 @@ class Kind:
 RESULT = Kind(
     name="result",
     filetype="goniosim-result",
-    schema_version="1.3",
+    schema_version="1.4",
     what="a goniosim result",
     writer="name a file that a simulation wrote",
     remedy="restore it from a copy or simulate again",

@@ -189,6 +189,8 @@ DATASETS = (
     Dataset("COMPONENT/estimator", ("direction",), "text", "1", "what made the numbers of the direction"),
     Dataset("COMPONENT/node_bias", ("direction",), "float64", "sr-0.5", "floor that nodes may leave", NOT_NEGATIVE),
     Dataset("COMPONENT/batches", _BLOCKS, "float64", "1", "energy in blocks of cells, by batches of replicates"),
+    Dataset("COMPONENT/paths", ("direction",), "int64", "1", "light paths of the direction", COUNT),
+    Dataset("COMPONENT/replicates", ("direction",), "int64", "1", "replicates of the direction", COUNT),
     *(Dataset(f"audit/{entry}", _TOTAL, "float64", "1", meaning) for entry, meaning in AUDIT_ENTRIES.items()),
     Dataset("audit/ENTRY_stderr", _TOTAL, "float64", "1", "standard error of the audit entry", NOT_NEGATIVE),
     Dataset(
@@ -197,6 +199,7 @@ DATASETS = (
     Dataset(
         "audit/direct_integrated_stderr", _TOTAL, "float64", "1", "standard error of direct_integrated", NOT_NEGATIVE
     ),
+    Dataset("audit/rays", ("direction",), "int64", "1", "rays that the audit rests on", COUNT),
     Dataset("cost/checkpoint", ("checkpoint",), "int64", "1", "number of the checkpoint", NOT_NEGATIVE),
     Dataset("cost/rays", _COST, "float64", "1", "rays up to the checkpoint", NOT_NEGATIVE),
     Dataset("cost/seconds", _COST, "float64", "s", "elapsed time of tracing, shared out", NOT_NEGATIVE),

@@ -166,6 +166,7 @@ def _result(file: h5py.File, ours: Ours, header: dict[str, Any]) -> Result:
             stderr={entry: read(f"audit/{entry}_stderr") for entry in AUDIT_ENTRIES},
             direct_integrated=read("audit/direct_integrated"),
             direct_integrated_stderr=read("audit/direct_integrated_stderr"),
+            rays=read("audit/rays") if ours.has("audit/rays") else None,
         ),
         cost=_cost(ours, read),
         effects={name: access.flag(effects, name) for name in ours.attributes("effects")},
@@ -209,6 +210,8 @@ def _component(file: h5py.File, ours: Ours, path: str, read: Callable[[str], Any
         estimator=there("estimator") or [],
         node_bias=there("node_bias"),
         batches=there("batches"),
+        paths=there("paths"),
+        replicates=there("replicates"),
         contains_delta=access.flag(access.group(file, path), "contains_delta"),
         orders={name: _component(file, ours, f"{path}/{name}", read) for _, name in orders},
     )

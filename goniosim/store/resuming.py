@@ -8,7 +8,7 @@ from goniosim.errors import FewerRaysError, OutputError
 from goniosim.result import Result
 from goniosim.scene import Scene
 from goniosim.store.keeping import look_at
-from goniosim.store.reader import read_state
+from goniosim.store.reader import open_result, read_state
 from goniosim.store.saving import write_result
 from goniosim.writing import StrPath
 
@@ -68,3 +68,29 @@ def state_left(path: StrPath, scene: Scene) -> tuple[bytes, np.ndarray] | None:
         return None
     state = read_state(path)
     return None if state is None else (state, standing.rays)
+
+
+def result_left(path: StrPath, scene: Scene) -> Result | None:
+    """The result of the same scene at a path, with less in it than is asked for: a run may go on from there.
+
+    Parameters
+    ----------
+    path : path-like
+    scene : goniosim.scene.Scene
+
+    Returns
+    -------
+    goniosim.result.Result or None
+        None if there is none, or nothing in it.
+
+    Raises
+    ------
+    DamagedFileError
+        If the file was altered.
+    OutputError
+        If something that is no result stands there.
+    """
+    standing = look_at(path, scene)
+    if standing is None or standing.rays is None or not standing.rays.any():
+        return None
+    return open_result(path)

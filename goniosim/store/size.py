@@ -8,8 +8,8 @@ _BYTES_PER_COUNT = 2.0
 # If every other cell is uncertain, at random.
 _BYTES_PER_FLAG = 0.21
 # Measured on slices of a single cell.
-_BYTES_PER_GROUP = 12_000
-_BYTES_OF_THE_REST = 44_000
+_BYTES_PER_GROUP = 13_000
+_BYTES_OF_THE_REST = 45_000
 
 
 def predicted_size(

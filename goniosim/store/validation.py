@@ -20,6 +20,8 @@ from goniosim.sums import BLOCKS, block_starts, block_sums
 # Each checkpoint comes after twice the work of the one before; a merged run may have more of them.
 MAX_CHECKPOINTS = 100_000
 MAX_BATCHES = 1024
+# What says in the provenance that a result is of several runs.
+JOINED = {"extended_from", "merged_seeds"}
 _SUM = 1e-6
 _ANGLE = 1e-9
 # Smaller numbers have lost their digits.
@@ -91,6 +93,11 @@ HEADER = (
         lambda header: _are_texts(header, "config_yaml", "created_utc", "goniosim_version"),
     ),
     Rule("estimator", "be a plain name", lambda header: is_name(header.get("estimator", "analog"))),
+    Rule(
+        "merged_seeds",
+        "be whole numbers, or absent",
+        lambda header: re.fullmatch(r"\d{1,19}(, \d{1,19})*", str(header.get("merged_seeds", 0)), re.ASCII) is not None,
+    ),
     Rule("an attribute of the root", "have a plain name", lambda header: all(map(is_name, header))),
 )
 
@@ -150,7 +157,7 @@ GEOMETRY = (
 RESULT = (
     Rule(
         "incident/rays",
-        "be those in config_yaml, fewer if status is partial or a target decides, more only of replicates",
+        "be those in config_yaml, fewer if status is partial or a target decides, more of replicates or several runs",
         lambda result, scene: _are_asked_for(result, scene.simulation),
     ),
     Rule(
@@ -201,6 +208,13 @@ RESULT = (
         "COMPONENT/batches",
         "be two or more, with the mean of them the energy in the blocks, or 0 for independent paths",
         lambda result, scene: all(_are_batches(part) for _, part in _parts(result) if part.batches is not None),
+    ),
+    Rule(
+        "COMPONENT/paths",
+        "be no fewer than incident/rays",
+        lambda result, scene: all(
+            part.paths is None or bool((part.paths >= result.rays).all()) for _, part in _parts(result)
+        ),
     ),
     Rule(
         "COMPONENT/energy",
@@ -286,9 +300,9 @@ def _parts(result: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _are_asked_for(result: Any, asked: Any) -> bool:
-    """Whether the rays are those of the scene; replicates of equal size may need some more."""
-    independent = result.estimator in ("analog", INTEGRATED)
-    if independent and (result.rays > asked.most_rays).any():
+    """Whether the rays are those of the scene; replicates of equal size may need some more, and runs add up."""
+    exact = result.estimator in ("analog", INTEGRATED) and not JOINED & result.provenance.keys()
+    if exact and (result.rays > asked.most_rays).any():
         return False
     return result.status == "partial" or asked.target is not None or bool((result.rays >= asked.rays).all())
 

@@ -16,7 +16,7 @@ from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCHEMA_V
 from goniosim.sums import BLOCKS, block_starts
 
 # Arrays of a component that not every one has.
-OPTIONAL = ("hits", "uncertain", "albedo", "albedo_stderr", "node_bias", "batches")
+OPTIONAL = ("hits", "uncertain", "albedo", "albedo_stderr", "node_bias", "batches", "paths", "replicates")
 
 
 def encode(result: Result) -> tuple[memoryview | bytes, ...]:
@@ -147,6 +147,8 @@ def arrays(result: Result) -> Iterator[tuple[str, Any]]:
         yield f"audit/{entry}_stderr", result.audit.stderr[entry]
     yield "audit/direct_integrated", result.audit.direct_integrated
     yield "audit/direct_integrated_stderr", result.audit.direct_integrated_stderr
+    if result.audit.rays is not None:
+        yield "audit/rays", result.audit.rays
     yield "cost/checkpoint", np.arange(result.cost.checkpoints)
     for name in ("rays", "seconds", "cpu_seconds"):
         yield f"cost/{name}", getattr(result.cost, name)

@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from content import content, datasets
 from impatient import IMPATIENT, wait_for
+from sameness import content, datasets
 from small import STUDY
 
 pytest.importorskip("distributed", reason="an optional part")

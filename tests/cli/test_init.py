@@ -98,7 +98,7 @@ def test_a_dash_prints_it(goniosim, folder):
 
 
 @pytest.mark.slow
-def test_an_installed_wheel_has_the_examples(tmp_path):
+def test_an_installed_wheel_has_the_examples_and_batch_scripts(tmp_path):
     source, wheels, site = tmp_path / "source", tmp_path / "wheels", tmp_path / "site"
     ignored = shutil.ignore_patterns("__pycache__", ".*", "build", "out", "*.egg-info", "tests", "docs")
     shutil.copytree(ROOT, source, ignore=ignored)
@@ -108,6 +108,7 @@ def test_an_installed_wheel_has_the_examples(tmp_path):
     (wheel,) = wheels.glob("*.whl")
     archive = zipfile.ZipFile(wheel)
     assert {f"goniosim/scene/examples/{name}.yaml" for name in NAMES} <= set(archive.namelist())
+    assert {f"goniosim/cluster/slurm/{name}.sbatch" for name in ("shards", "merge")} <= set(archive.namelist())
     archive.extractall(site)
     script = f"import sys; sys.path.insert(0, {str(site)!r}); from goniosim_cli.main import main; main()"
     for name in NAMES:

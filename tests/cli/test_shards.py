@@ -6,10 +6,10 @@ import signal
 
 import pytest
 
-from content import datasets
 from goniosim.cluster import error_path
 from goniosim.store import open_result, read_portion
 from impatient import IMPATIENT, wait_for
+from sameness import datasets
 
 ANALOG = ("--estimator", "analog")
 STUDY = ("simulate", "study.yaml", "-q", *ANALOG)

@@ -138,6 +138,7 @@ CASES = {
     "seed-text": (text("/", "seed", "1"), "seed must be a whole number"),
     "seed-other": (number("/", "seed", np.uint64(5)), "seed must be that in config_yaml"),
     "seed-huge": (number("/", "seed", np.uint64(2**64 - 1)), "seed must be that in config_yaml"),
+    "seeds-merged": (text("/", "merged_seeds", "1; 2"), "merged_seeds must be whole numbers, or absent"),
     "estimator-name": (text("/", "estimator", "\x1b[2J"), "estimator must be a plain name"),
     "estimator-header": (text("/", "estimator", "split"), "the attribute estimator must be that of the components"),
     "hash": (text("/", "config_hash", "../x"), "config_hash must be 64 hexadecimal digits"),
@@ -271,10 +272,11 @@ BATCHES = "reflection/internal/batches"
         (dataset(BATCHES, np.zeros((2, 32, 3, 1, 1))), f"{BATCHES} has shape"),
         (dataset("batch", shape=(1 << 40,), dtype="i8", chunks=(1 << 20,)), f"{BATCHES} has shape"),
         (values("reflection/internal/node_bias", lambda v: -v), "node_bias must be finite and 0 or more"),
+        (values("reflection/internal/paths", lambda v: v - 1), "COMPONENT/paths must be no fewer than incident/rays"),
         (dataset("reflection/internal/estimator", np.array([b"analog", b"split"])), "COMPONENT/batches must be two"),
         (lambda file: file["reflection/internal"].create_dataset("hits", data=[1]), None),
     ],
-    ids=["mean", "infinite", "blocks", "endless", "bias", "analog", "added"],
+    ids=["mean", "infinite", "blocks", "endless", "bias", "paths", "analog", "added"],
 )
 def test_batches_belong_to_what_they_are_of(tmp_path, edit, words):
     """What was added without being announced is no part of the file."""

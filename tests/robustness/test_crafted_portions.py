@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from content import content
 from crafting import arrays, changed
 from goniosim.cluster import Division, ShardPlan, merge, run_shard
 from goniosim.engine import join_portions, piece_rays, simulate, trace_portion
@@ -15,6 +14,7 @@ from goniosim.engine.packing import pack, unpack
 from goniosim.errors import UnusableResultError
 from goniosim.store import read_portion, write_portion
 from reference.scenes import dielectric, lambert, make_scene
+from sameness import content
 
 LAYERS = [dielectric(1.5, 0.1), lambert(0.5)]
 SCENES = {

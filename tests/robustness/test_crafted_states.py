@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crafting import arrays, changed
-from goniosim.engine import checked_state
+from goniosim.engine import checked_state, prior_of, simulate
 from goniosim.engine.drive import Drive
 from goniosim.engine.packing import pack, unpack
 from goniosim.engine.plan import make_plan
@@ -18,21 +18,23 @@ LAYERS = [dielectric(1.5, 0.1), lambert(0.5)]
 SCENES = {
     "analog": make_scene(LAYERS, [10.0, 70.0], rows=6, columns=12, rays=4000, estimator="analog"),
     "connection": make_scene(LAYERS, [10.0, 70.0], rows=6, columns=12, rays=131_072),
+    "extended": make_scene(LAYERS, [10.0, 70.0], rows=6, columns=12, rays=6000, estimator="analog"),
 }
 
 
-def run(scene, checkpoint=None, resumed=None):
+def run(scene, checkpoint=None, resumed=None, prior=None):
     drive = Drive(1, threading.Event(), lambda done, total: None)
-    session = Session(make_plan(scene), scene.simulation, drive, checkpoint, resumed)
+    session = Session(make_plan(scene), scene.simulation, drive, checkpoint, resumed, prior)
     session.run()
 
 
 @pytest.fixture(scope="module", params=SCENES)
 def left(request):
     """A scene and a state of it, in mid-run."""
-    found = []
-    run(SCENES[request.param], lambda session: found.append(pack(session.state())))
-    return SCENES[request.param], unpack(found[2])
+    found, scene = [], SCENES[request.param]
+    prior = prior_of(scene, simulate(SCENES["analog"])) if request.param == "extended" else None
+    run(scene, lambda session: found.append(pack(session.state())), prior=prior)
+    return scene, unpack(found[2])
 
 
 def test_arrays_of_other_shapes_and_types_are_refused(left):
@@ -61,6 +63,15 @@ def test_what_is_missing_or_nonsense_is_refused(left, name):
             wrong = {**wrong, "calls": 1}
         with pytest.raises(UnusableResultError, match="does not fit the scene"):
             run(scene, resumed=wrong)
+
+
+@pytest.mark.parametrize("left", ["extended"], indirect=True)
+def test_what_was_there_before_has_no_negative_light_paths(left):
+    scene, tree = left
+    for path, array in arrays(tree["prior"]):
+        if path[-1] in ("paths", "rays") and array.dtype == np.int64:
+            with pytest.raises(UnusableResultError, match="a number of light paths is negative"):
+                run(scene, resumed=changed(tree, ("prior", *path), -array))
 
 
 def test_an_end_behind_the_end_is_refused(left):

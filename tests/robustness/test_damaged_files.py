@@ -284,7 +284,7 @@ def test_newer_major_version(path, version):
     for each in (content, content[:4000]):
         for reader in (open_result, read_header):
             message = refused(path, each, NewerSchemaError, reader)
-            assert f"schema {version}" in message and "schema 1.3" in message
+            assert f"schema {version}" in message and "schema 1.4" in message
 
 
 def test_newer_minor_version(path):
@@ -300,7 +300,7 @@ def test_newer_minor_version(path):
     assert read_header(path)["temperature"] == 20
 
 
-@pytest.mark.parametrize(("version", "error"), [("1.3", DamagedFileError), ("1.7", NewerSchemaError)])
+@pytest.mark.parametrize(("version", "error"), [("1.4", DamagedFileError), ("1.7", NewerSchemaError)])
 def test_a_scene_that_only_a_newer_goniosim_knows_is_no_damage(path, version, error):
     def edit(file):
         file.attrs["schema_version"] = np.bytes_(version)
@@ -358,7 +358,7 @@ def test_schema_1_1_is_still_read(tmp_path):
     assert cost.elapsed[-1] == pytest.approx(2.0 * cost.seconds[0, -1]) and (cost.seconds[0] == cost.seconds[1]).all()
     assert cost.noise("reflection/internal")[-1] == pytest.approx(0.00173277, rel=1e-5)
     write_result(result, tmp_path / "new.h5")
-    assert read_header(tmp_path / "new.h5")["schema_version"] == "1.3"
+    assert read_header(tmp_path / "new.h5")["schema_version"] == "1.4"
     np.testing.assert_array_equal(open_result(tmp_path / "new.h5").cost.seconds, cost.seconds)
 
 

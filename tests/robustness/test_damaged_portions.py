@@ -5,12 +5,12 @@ import warnings
 import numpy as np
 import pytest
 
-from content import content
 from goniosim.cluster import Division, ShardPlan, State, merge, run_shard, standing_of
 from goniosim.engine import simulate
 from goniosim.errors import AnnotatedFileWarning, DamagedFileError, ForeignFileError, UnusableResultError
 from goniosim.store import read_portion
 from reference.scenes import dielectric, lambert, make_scene
+from sameness import content
 
 LAYERS = [dielectric(1.5, 0.1), lambert(0.5)]
 SCENE = make_scene(LAYERS, [10.0, 70.0], rows=6, columns=12, rays=4000, estimator="analog")

@@ -5,13 +5,13 @@ import threading
 
 import pytest
 
-from content import content
 from goniosim.engine import join_portions, piece_rays, simulate, trace_portion
 from goniosim.engine.drive import Drive
 from goniosim.engine.plan import make_plan
 from goniosim.engine.portion import Portion
 from goniosim.scene import with_arguments
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+from sameness import content
 
 METAL = [dielectric(1.5, 0.3), medium([0.05, 0.1, 0.8]), conductor(1.45, [1.0, 0.5, 0.5], 0.3)]
 SLAB = [dielectric(1.5, 0.001), medium(0.2), dielectric(1.0, 0.3)]

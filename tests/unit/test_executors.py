@@ -9,9 +9,9 @@ from concurrent.futures.process import BrokenProcessPool
 import pytest
 
 import goniosim
-from content import content, datasets
 from goniosim.cluster import shards_folder, spreading
 from goniosim.errors import ConfigError, OutputError, RefusalError, StoppedError
+from sameness import content, datasets
 from small import STUDY as THREE
 
 STUDY = THREE.replace("[0.1, 0.2, 0.3]", "[0.1, 0.2]")

@@ -123,6 +123,7 @@ def test_just_enough_is_enough(room):
     scene = make_scene(PLASTIC, [30.0])
     room(memory_needed(scene).peak)
     assert shortage(scene) is None
+    assert "GB are needed" in shortage(scene, besides=1)
     room(memory_needed(scene).peak - 1)
     assert "GB are needed" in shortage(scene)
 

@@ -99,7 +99,7 @@ def test_header(tmp_path):
     write_result(result, tmp_path / "result.h5")
     assert read_header(tmp_path / "result.h5") == {
         "filetype": "goniosim-result",
-        "schema_version": "1.3",
+        "schema_version": "1.4",
         "config_yaml": result.config_yaml,
         "config_hash": result.config_hash,
         "seed": 7,
@@ -126,7 +126,7 @@ def test_the_file_begins_with_the_signature_of_hdf5(tmp_path):
     write_result(make_result(), tmp_path / "result.h5")
     content = (tmp_path / "result.h5").read_bytes()
     assert content.startswith(b"\x89HDF\r\n\x1a\n") and b"".join(encode(make_result())) == content
-    assert content.index(b"goniosim result, schema 1.3") + 512 <= 8192
+    assert content.index(b"goniosim result, schema 1.4") + 512 <= 8192
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

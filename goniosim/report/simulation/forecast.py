@@ -87,17 +87,19 @@ def file_size(scene):
         orders,
         scene.slice.parametrization,
     )
-    return arrays + _batches(scene, len(names) - 1) + len(scene.to_yaml().encode())
+    return arrays + size_of_batches(scene) + len(scene.to_yaml().encode())
 
 
-def _batches(scene, sampled):
+def size_of_batches(scene):
     """Bytes of the batches of replicates that estimators other than analog keep, see `goniosim.sums`."""
     from goniosim.engine.rounds import FEWEST_PATHS
+    from goniosim.scene import components
 
     asked = scene.simulation
     if asked.estimator == "analog" or (asked.estimator == "auto" and (asked.rays or FEWEST_PATHS) < FEWEST_PATHS):
         return 0
     blocks = min(scene.slice.rows, BLOCKS[0]) * min(scene.slice.columns, BLOCKS[1])
+    sampled = len(components(scene)) - 1
     return 8 * BATCHES * 3 * blocks * len(scene.incident.theta_deg) * sampled * (1 + (asked.orders or 0))
 
 

@@ -26,7 +26,6 @@ def row(result, path):
     albedo = [float(np.mean(value[traced])) for value, _ in albedos(result).values()]
     lost = sum(energy for name, energy in result.audit.energy.items() if name.startswith("lost_masked"))
     cost = result.cost
-    noise = max((float(cost.noise(name)[-1]) for name in cost.error if cost.checkpoints), default=0.0)
     seconds = float(cost.elapsed[-1]) if cost.checkpoints else 0.0
     return [
         result.name,
@@ -35,9 +34,15 @@ def row(result, path):
         text.duration(seconds),
         f"{sum(albedo):.4f}",
         f"{100.0 * float(np.max(lost)):.1f} %",
-        f"{noise:.1e}",
+        f"{noise(result):.1e}",
         text.size(os.path.getsize(path)),
     ]
+
+
+def noise(result):
+    """Noise of a result in sr^-1/2, the largest of its components and directions; 0 of what has none."""
+    cost = result.cost
+    return max((float(cost.noise(name)[-1]) for name in cost.error if cost.checkpoints), default=0.0)
 
 
 def study_text(rows):

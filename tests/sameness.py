@@ -1,24 +1,24 @@
-"""What two results, or two files of them, have to agree in to the last bit: everything but times and machines."""
+"""Whether results, or files of them, are the same: all of their numbers, as bytes."""
 
 import h5py
 import numpy as np
 
 from goniosim.engine.packing import pack
 
-TIMES = {"cost/seconds", "cost/cpu_seconds"}
+FIELDS = ("energy", "stderr", "bsdf", "bsdf_stderr", "albedo", "albedo_stderr")
+OPTIONAL = ("uncertain", "hits", "batches", "node_bias", "paths", "replicates")
+
+TIMES = ("cost/seconds", "cost/cpu_seconds")
 
 
 def content(result):
-    """Everything but times and words, as bytes."""
-    parts = [result.rays, result.status, result.config_yaml, result.cost.rays, result.cost.error]
-    parts += [result.audit.energy, result.audit.stderr]
+    """Everything but times and words."""
+    parts = [result.rays, result.status, result.cost.rays, result.cost.error]
+    parts += [result.audit.energy, result.audit.stderr, result.audit.rays]
     for name, component in result.components.items():
         for one in (component, *component.orders.values()):
             parts += [name, one.estimator, one.contains_delta]
-            arrays = (
-                getattr(one, field) for field in ("energy", "stderr", "bsdf", "bsdf_stderr", "albedo", "albedo_stderr")
-            )
-            parts += [*arrays, *(getattr(one, field) for field in ("uncertain", "hits", "batches", "node_bias"))]
+            parts += [getattr(one, field) for field in (*FIELDS, *OPTIONAL)]
     return pack(parts)
 
 
