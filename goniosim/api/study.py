@@ -137,8 +137,9 @@ def simulate_study(
     ['coat-0.1', 'coat-0.2', 'coat-0.3']
     >>> goniosim.simulate_study("study.yaml", rays=1e4, folder="coats")["coat-0.2"].name
     'coat-0.2.h5'
-    >>> with ProcessPoolExecutor(mp_context=multiprocessing.get_context("spawn")) as pool:
-    ...     results = goniosim.simulate_study("study.yaml", rays=1e4, executor=pool)
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> with ThreadPoolExecutor(2) as executor:
+    ...     results = goniosim.simulate_study("study.yaml", rays=1e4, executor=executor)
     """
     given = {
         "rays": rays,
