@@ -25,7 +25,7 @@ material:
     - interface: {type: lambert, rho: 0.5}
 incident: {theta_deg: [30]}
 slice: {rows: 2, columns: 4}
-simulation: {rays: 1}
+simulation: {rays: 100}
 """
 
 
