@@ -30,7 +30,8 @@ What follows for shards of {work} of work each, {materials} materials, portions 
 
 {model}
 
-*Efficiency* is work over all the time that passes: start-up, work, and the merge, which waits for the last shard. {limit}
+*Efficiency* is work over all the time that passes: start-up, work, and the merge, which waits for the last shard.
+{limit}
 """
 
 
@@ -108,8 +109,8 @@ def _limit(measured, portion):
     name = "the merge, which reads all portions one after the other" if merge > begin else "the start-up of the shards"
     share = max(merge, begin) / (most * WORK)
     return (
-        f"What\nlimits first is {name}: {text.duration(max(merge, begin))} at {most} shards.\n"
-        f"These have done {text.duration(most * WORK)} of work by then: it is {_percent(share)} of the time of all machines."
+        f"What limits first is {name}: {text.duration(max(merge, begin))} at {most} shards.\n"
+        f"These have done {text.duration(most * WORK)} of work by then: it is {_percent(share)} of the time of all."
     )
 
 
