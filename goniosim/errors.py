@@ -21,9 +21,11 @@ code  meaning
 9     a target was not reached within its limits; the result is in the
       output file
 10    the operating system or an environment variable stands in the way
-129   the terminal was closed (SIGHUP); what was gathered is in the output file
+75    a simulation was stopped by a signal or its time limit: run it
+      again, it goes on
+129   another command was stopped: the terminal was closed (SIGHUP)
 130   stopped by Ctrl-C; what was gathered is in the output file
-143   stopped by SIGTERM; what was gathered is in the output file
+143   another command was stopped by SIGTERM
 ====  =========================================================
 """
 

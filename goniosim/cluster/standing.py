@@ -29,15 +29,18 @@ class Standing:
         Light paths that it holds and that it should hold; 0 where nobody knows.
     why : str
         What is wrong with it, if it is damaged.
-    seconds : int
+    seconds : float
         That were spent on it.
+    noise : float or None
+        Largest noise of a slice in the directions that it has begun, in sr^-1/2.
     """
 
     state: State
     done_rays: int = 0
     total_rays: int = 0
     why: str = ""
-    seconds: int = 0
+    seconds: float = 0.0
+    noise: float | None = None
 
 
 def standing_of(task: Task, folder: StrPath, *, whole: bool = False) -> Standing:
@@ -75,7 +78,13 @@ def _of_portion(task: Task, folder: StrPath, whole: bool) -> Standing:
     if why := misfit(task, found):
         raise OutputError(f"{path}: {why}; it is left alone: remove it, or choose another folder")
     state = State.DONE if found.is_whole else State.PARTIAL
-    return Standing(state, found.done_rays, found.total_rays, seconds=found.seconds)
+    return Standing(
+        state,
+        found.done_rays,
+        found.total_rays,
+        seconds=found.milliseconds / 1000.0,
+        noise=float(found.noise) if found.noise else None,
+    )
 
 
 def misfit(task: Task, found: Portion) -> str:

@@ -39,8 +39,10 @@ class Shard:
         Light paths that it holds, and that it should hold; without scenes where a target decides how many.
     done_work, total_work : float
         The same in units of predicted time, with all scenes.
-    seconds : int
+    seconds : float
         Spent on what it holds.
+    noise : float or None
+        Largest noise of a slice in the directions that it has begun, in sr^-1/2.
     why : str
         What went wrong, if something did.
     """
@@ -51,7 +53,8 @@ class Shard:
     total_rays: int
     done_work: float
     total_work: float
-    seconds: int
+    seconds: float
+    noise: float | None
     why: str
 
 
@@ -71,6 +74,11 @@ class Status:
     def of(self, *stages):
         """The shards that are so far."""
         return [shard for shard in self.shards if shard.stage in stages]
+
+    @property
+    def noise(self):
+        """Largest noise of a slice in the directions that were begun, in sr^-1/2; None if nobody knows."""
+        return max((shard.noise for shard in self.shards if shard.noise is not None), default=None)
 
     def seconds_left(self, shards):
         """Seconds that some shards still take, one after the other.
@@ -131,7 +139,7 @@ def look(folder):
 def _shard(number, tasks, folder, plan, parts):
     standings = [standing_of(task, folder) for task in tasks]
     sizes = [parts(task) for task in tasks]
-    done_rays, done_work, seconds = 0, 0.0, 0
+    done_rays, done_work, seconds = 0, 0.0, 0.0
     for task, standing, (rays, work) in zip(tasks, standings, sizes, strict=True):
         share = float(standing.state is State.DONE)
         if not task.is_result and standing.total_rays:
@@ -152,8 +160,9 @@ def _shard(number, tasks, folder, plan, parts):
     else:
         stage = Stage.MISSING
     total_rays, total_work = sum(rays for rays, _ in sizes), sum(work for _, work in sizes)
+    noise = max((standing.noise for standing in standings if standing.noise is not None), default=None)
     shown = (why or damaged) if stage is Stage.FAILED else ""
-    return Shard(number, stage, done_rays, total_rays, done_work, total_work, seconds, shown)
+    return Shard(number, stage, done_rays, total_rays, done_work, total_work, seconds, noise, shown)
 
 
 def _failure(folder, number, shards):

@@ -12,7 +12,7 @@ from goniosim.cluster.claimed import claimed
 from goniosim.cluster.division import Division, Task
 from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.standing import Standing, State, standing_of
-from goniosim.engine import checked_state, simulate, trace_portion
+from goniosim.engine import Traced, checked_state, simulate, trace_portion
 from goniosim.errors import (
     FewerRaysError,
     GoniosimError,
@@ -126,9 +126,8 @@ def _trace_portion(task: Task, scene: Scene, folder: StrPath, note: Callable[[st
     path, began = task.path(folder), time.monotonic()
     resume, before = _left(path, note)
 
-    def keep(state: bytes, done_rays: int, total_rays: int, rescued: bool = False) -> Standing:
-        seconds = before + round(time.monotonic() - began)
-        known = provenance(1)
+    def keep(traced: Traced, rescued: bool = False) -> Standing:
+        known, milliseconds = provenance(1), before + round(1000.0 * (time.monotonic() - began))
         portion = Portion(
             goniosim_version=known["goniosim_version"],
             created_utc=known["created_utc"],
@@ -139,29 +138,31 @@ def _trace_portion(task: Task, scene: Scene, folder: StrPath, note: Callable[[st
             shards=task.shards,
             first=task.first or 0,
             end=task.end or 0,
-            done_rays=done_rays,
-            total_rays=total_rays,
-            seconds=seconds,
+            done_rays=traced.done_rays,
+            total_rays=traced.total_rays,
+            milliseconds=milliseconds,
+            noise="" if traced.noise is None else f"{traced.noise:.4g}",
         )
-        write_portion(portion, state, path, rescued=rescued)
-        return Standing(State.DONE if portion.is_whole else State.PARTIAL, done_rays, total_rays, seconds=seconds)
+        write_portion(portion, traced.state, path, rescued=rescued)
+        state = State.DONE if portion.is_whole else State.PARTIAL
+        return Standing(state, traced.done_rays, traced.total_rays, seconds=milliseconds / 1000.0, noise=traced.noise)
 
-    def checkpoint(state: bytes, done_rays: int, total_rays: int) -> None:
+    def checkpoint(traced: Traced) -> None:
         try:
-            keep(state, done_rays, total_rays)
+            keep(traced)
         except OutputError as error:
             note(f"no checkpoint: {error}")
 
     try:
-        state, done, total = trace_portion(scene, task.first, task.end, checkpoint=checkpoint, resume=resume, **given)
+        traced = trace_portion(scene, task.first, task.end, checkpoint=checkpoint, resume=resume, **given)
     except UnusableResultError as error:
         # No accident: its digests were right.
         raise UnusableResultError(f"{path}: {error}; remove it, to begin anew") from error
-    return keep(state, done, total, rescued=True)
+    return keep(traced, rescued=True)
 
 
 def _left(path: Path, note: Callable[[str], object]) -> tuple[bytes | None, int]:
-    """State and seconds of an interrupted shard."""
+    """State and milliseconds of an interrupted shard."""
     if not path.exists():
         return None, 0
     try:
@@ -173,7 +174,7 @@ def _left(path: Path, note: Callable[[str], object]) -> tuple[bytes | None, int]
         note(f"{path}: begins anew: {error}")
         return None, 0
     note(f"{path}: goes on from {100.0 * portion.done_rays / portion.total_rays:.3g} % of its light paths")
-    return state, portion.seconds
+    return state, portion.milliseconds
 
 
 def _trace_result(task: Task, scene: Scene, folder: StrPath, note: Callable[[str], object], **given: Any) -> Standing:

@@ -93,6 +93,8 @@ def status_text(status, results):
         lines += [f"    {shard.number}: {shard.why}" for shard in shards if shard.why][:MOST_SHOWN]
     if total:
         lines.append(f"  rays     {text.count(done)} of {text.count(total)} ({100.0 * done / total:.3g} %)")
+    if status.noise is not None:
+        lines.append(f"  noise    at most {status.noise:.2g} sr^-1/2 in the slices that were begun")
     lines.append(f"  left     {_left(status, results)}")
     if results:
         rows = [study.row(result, path) for path, result in results.items()]
@@ -120,6 +122,7 @@ def status_as_data(status, results):
         "errors": {str(shard.number): shard.why for shard in status.shards if shard.why},
         "rays_done": sum(shard.done_rays for shard in status.shards),
         "rays_planned": sum(shard.total_rays for shard in status.shards),
+        "noise": status.noise,
         "seconds_left": status.seconds_left(status.shards),
         "results": {
             result.name: {"file": str(path), "status": result.status, "noise": study.noise(result)}

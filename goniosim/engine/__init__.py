@@ -4,7 +4,7 @@ from .estimators.choose import estimators_of
 from .extended import prior_of
 from .memory import memory_needed, require_memory, shortage, threads_of
 from .pieces import piece_rays
-from .portions import join_portions, trace_portion
+from .portions import Traced, join_portions, trace_portion
 from .prior import seeds_of
 from .probe import Probe, probe, warm_up
 from .simulate import checked_state, simulate
@@ -12,6 +12,7 @@ from .uniting import unite
 
 __all__ = [
     "Probe",
+    "Traced",
     "checked_state",
     "estimators_of",
     "join_portions",

@@ -55,6 +55,15 @@ class Portion:
         """Light paths that are added up; never all before the last piece of work, which may have none of its own."""
         return self._through if self.finished else min(self._through, self.total_rays - 1)
 
+    @property
+    def noise(self):
+        """Largest noise of a slice in the directions that it has begun, in sr^-1/2, as of their last finished round.
+
+        None if no round is finished. What others have of these directions makes it smaller.
+        """
+        last = [noted[-1][3] for run in self.runs for noted in run.spending.checkpoints if noted]
+        return max((error for errors in last for error in errors.values()), default=None)
+
     def run(self, drive, keep=None):
         """Do what is left.
 

@@ -1,6 +1,7 @@
 """Simulations in portions: each traced for itself, on any machine, and joined to what one run would have yielded."""
 
 import threading
+from dataclasses import dataclass
 
 from ..cores import granted_threads
 from ..errors import StoppedError, UnusableResultError
@@ -16,6 +17,27 @@ from .portion import Portion
 from .probe import warm_up
 from .session import Session
 from .simulate import checked_state, guarded
+
+
+@dataclass(frozen=True)
+class Traced:
+    """A portion, as far as it is traced.
+
+    Attributes
+    ----------
+    state : bytes
+        For `join_portions`, and to go on from.
+    done_rays, total_rays : int
+        Light paths that it holds, and that belong to it; equal if it is whole, and only then.
+    noise : float or None
+        See `portion.Portion.noise`.
+    """
+
+    state: bytes
+    done_rays: int
+    total_rays: int
+    noise: float | None
+
 
 # What reading a state of somebody else's making may raise.
 _MISFIT = (ValueError, TypeError, LookupError, AttributeError, ArithmeticError)
@@ -35,7 +57,7 @@ def trace_portion(scene, first, end, *, progress=None, stop=None, checkpoint=Non
     stop : threading.Event, optional
         When set, tracing ends within a second.
     checkpoint : callable, optional
-        Called as ``checkpoint(state, done_rays, total_rays)`` from time to time.
+        Called with a `Traced` from time to time.
     every : float
         Seconds between two such calls, at least.
     resume : bytes-like, optional
@@ -43,10 +65,7 @@ def trace_portion(scene, first, end, *, progress=None, stop=None, checkpoint=Non
 
     Returns
     -------
-    state : bytes
-        For `join_portions`.
-    done_rays, total_rays : int
-        Light paths of the portion; equal if it is whole.
+    Traced
 
     Raises
     ------
@@ -68,13 +87,17 @@ def trace_portion(scene, first, end, *, progress=None, stop=None, checkpoint=Non
 
         def kept(portion):
             if has_room(room):
-                checkpoint(pack(portion.state()), portion.rays, portion.total_rays)
+                checkpoint(_traced(portion))
 
         keep = None if checkpoint is None else Checkpoints(every, kept)
         portion.run(Drive(threads, stop or threading.Event(), progress or (lambda done, total: None)), keep)
         if not portion.done:
             raise StoppedError("stopped before the first rays were through: there is nothing to keep")
-        return pack(portion.state()), portion.rays, portion.total_rays
+        return _traced(portion)
+
+
+def _traced(portion):
+    return Traced(pack(portion.state()), portion.rays, portion.total_rays, portion.noise)
 
 
 def join_portions(scene, states, *, stop=None):

@@ -1,6 +1,7 @@
 """Portions of simulations on the disk: what a shard has of one material, until all are joined."""
 
 import io
+import math
 import uuid
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
@@ -42,8 +43,10 @@ class Portion:
         Pieces of the scene that belong to it: from ``first`` to before ``end``.
     done_rays, total_rays : int
         Light paths that it holds, and that belong to it.
-    seconds : int
-        Whole seconds of wall-clock time that were spent on it.
+    milliseconds : int
+        Of wall-clock time that were spent on it.
+    noise : str
+        A number: the largest noise of a slice in the directions that it has begun, in sr^-1/2; empty if nobody knows.
     """
 
     goniosim_version: str
@@ -57,7 +60,8 @@ class Portion:
     end: int
     done_rays: int
     total_rays: int
-    seconds: int
+    milliseconds: int
+    noise: str
 
     @property
     def is_whole(self) -> bool:
@@ -69,6 +73,8 @@ class Portion:
         sound = 1 <= self.shard <= self.shards and 0 <= self.first < self.end and 0 < self.done_rays <= self.total_rays
         if not sound:
             raise ValueError("numbers that contradict each other")
+        if self.noise and not 0.0 <= float(self.noise) < math.inf:
+            raise ValueError("a noise that is none")
 
 
 def write_portion(portion: Portion, state: bytes, path: StrPath, *, rescued: bool = True) -> None:

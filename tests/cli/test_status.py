@@ -64,11 +64,13 @@ def test_a_shard_that_somebody_is_at_work_on_runs(planned, goniosim):
 def test_merged_results_tell_their_noise(planned, goniosim):
     for number in range(1, 6):
         run_shard("shards", number, threads=1)
-    assert "  left     nothing: merge them\n" in goniosim("status", "shards")[1]
+    noise, out = parsed(goniosim, "shards")["noise"], goniosim("status", "shards")[1]
+    assert "  left     nothing: merge them\n" in out and f"  noise    at most {noise:.2g} sr^-1/2" in out
     assert goniosim("merge", "shards", "-o", "shards/results/small.h5", "-q")[0] == 0
     found = parsed(goniosim, "shards")
     assert found["seconds_left"] == 0.0 and found["rays_done"] == found["rays_planned"]
-    assert found["results"]["small"]["status"] == "complete" and 0.0 < found["results"]["small"]["noise"] < 0.1
+    # What was known of one shard alone, before the others added to it.
+    assert found["results"]["small"]["status"] == "complete" and 0.0 < found["results"]["small"]["noise"] < noise < 0.1
     out = goniosim("status", "shards")[1]
     assert "  left     nothing\n" in out and "\nMerged, in shards/results\n" in out
 
@@ -79,7 +81,7 @@ def test_a_folder_without_a_plan_is_an_error(folder, goniosim):
 
 
 def _shard(stage, done, total, seconds):
-    return Shard(1, stage, 0, 0, done, total, seconds, "")
+    return Shard(1, stage, 0, 0, done, total, seconds, None, "")
 
 
 def test_what_is_left_follows_from_the_rate_of_what_is_done():

@@ -29,7 +29,7 @@ def made(request):
     scene = SCENES[request.param]
     count = len(piece_rays(scene))
     edges = [0, count // 3, 3 * count // 4, count]
-    return scene, edges, [unpack(trace_portion(scene, *each)[0]) for each in itertools.pairwise(edges)]
+    return scene, edges, [unpack(trace_portion(scene, *each).state) for each in itertools.pairwise(edges)]
 
 
 def refused(made, number, tree):

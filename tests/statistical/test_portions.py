@@ -34,7 +34,7 @@ def scene_of(case):
 def portions(scene, n, **given):
     """States of n portions of equally many pieces, or a few more or less."""
     edges = [len(piece_rays(scene)) * k // n for k in range(n + 1)]
-    return [trace_portion(scene, a, b, **given)[0] for a, b in itertools.pairwise(edges) if b > a]
+    return [trace_portion(scene, a, b, **given).state for a, b in itertools.pairwise(edges) if b > a]
 
 
 @pytest.fixture(scope="module")

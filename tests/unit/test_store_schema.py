@@ -269,8 +269,15 @@ def test_the_example_of_the_models_file_runs(tmp_path, monkeypatch, capsys):
 
 
 def test_every_piece_of_a_portion_file_is_described_and_the_reverse(tmp_path):
-    texts = {"goniosim_version": "0", "created_utc": "now", "name": "coat", "config_yaml": "a: 1", "config_hash": "f"}
-    numbers = {"shard": 3, "shards": 16, "first": 4, "end": 9, "done_rays": 5, "total_rays": 7, "seconds": 2}
+    texts = {
+        "goniosim_version": "0",
+        "created_utc": "now",
+        "name": "coat",
+        "config_yaml": "a: 1",
+        "config_hash": "f",
+        "noise": "2e-4",
+    }
+    numbers = {"shard": 3, "shards": 16, "first": 4, "end": 9, "done_rays": 5, "total_rays": 7, "milliseconds": 2}
     write_portion(Portion(**texts, **numbers), b"12345", tmp_path / "portion.h5")
     described = {(name.strip("`"), kind) for _, name, kind, _ in rows(4, SHARDS)}
     with h5py.File(tmp_path / "portion.h5") as file:
