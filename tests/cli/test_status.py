@@ -64,15 +64,29 @@ def test_a_shard_that_somebody_is_at_work_on_runs(planned, goniosim):
 def test_merged_results_tell_their_noise(planned, goniosim):
     for number in range(1, 6):
         run_shard("shards", number, threads=1)
-    noise, out = parsed(goniosim, "shards")["noise"], goniosim("status", "shards")[1]
-    assert "  left     nothing: merge them\n" in out and f"  noise    at most {noise:.2g} sr^-1/2" in out
+    assert "  left     nothing: merge them\n" in goniosim("status", "shards")[1]
+    # No shard has a whole round.
+    assert parsed(goniosim, "shards")["noise"] is None
     assert goniosim("merge", "shards", "-o", "shards/results/small.h5", "-q")[0] == 0
     found = parsed(goniosim, "shards")
     assert found["seconds_left"] == 0.0 and found["rays_done"] == found["rays_planned"]
-    # What was known of one shard alone, before the others added to it.
-    assert found["results"]["small"]["status"] == "complete" and 0.0 < found["results"]["small"]["noise"] < noise < 0.1
+    assert found["results"]["small"]["status"] == "complete" and 0.0 < found["results"]["small"]["noise"] < 0.1
     out = goniosim("status", "shards")[1]
     assert "  left     nothing\n" in out and "\nMerged, in shards/results\n" in out
+
+
+def test_the_noise_of_shards_is_that_of_their_finished_rounds(folder, goniosim):
+    """Others have the rest of a direction, and make it smaller."""
+    scene = load_scene("scene.yaml", ["simulation.rays=1.2e6", "simulation.estimator=split"])
+    for count in (1, 3):
+        ShardPlan.make([scene], None, count).write(f"in-{count}")
+        for number in range(1, count + 1):
+            run_shard(f"in-{count}", number, threads=1)
+    goniosim("merge", "in-1", "-o", "in-1/results/small.h5", "-q")
+    whole, cut = (parsed(goniosim, f"in-{count}") for count in (1, 3))
+    reached = whole["results"]["small"]["noise"]
+    assert whole["noise"] == pytest.approx(reached, rel=1e-3) and cut["noise"] > 1.2 * reached
+    assert f"  noise    at most {cut['noise']:.2g} sr^-1/2" in goniosim("status", "in-3")[1]
 
 
 def test_a_folder_without_a_plan_is_an_error(folder, goniosim):
