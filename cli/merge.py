@@ -50,7 +50,10 @@ def merge(sources, output, allow_missing, only, threads, overwrite, quiet):
             say(summary(result, output))
         return
     if len(sources) > 1:
-        raise click.UsageError("shards are merged from one folder at a time")
+        raise click.UsageError(
+            "these are folders: shards are merged from one folder at a time, and results file by file, such as "
+            f"{Path(sources[0]) / 'NAME.h5'} {Path(sources[1]) / 'NAME.h5'}"
+        )
     progress = make_progress(None, quiet)
     with tidied_up():
         given = {"allow_missing": allow_missing, "overwrite": overwrite, "only": only, "threads": threads}

@@ -129,9 +129,9 @@ def trace(described, text, output, time_limit, every, quiet, verbose):
 
 
 def _summary(number, count, found):
-    from goniosim.report.text import duration
+    from goniosim.report.text import counted, duration
 
-    lines = [f"shard {number} of {count}: {len(found)} files"] if found else [f"shard {number} of {count}: no work"]
+    lines = [f"shard {number} of {count}: {counted(len(found), 'file') if found else 'no work'}"]
     for task, standing in found:
         share = f"{100.0 * standing.done_rays / standing.total_rays:.3g} %" if standing.total_rays else "some"
         lines.append(f"  {task.name}: {share} of its light paths, {duration(standing.seconds)}")

@@ -17,7 +17,8 @@ from .signals import StopSignals
     "--output",
     type=PATH,
     metavar="OUT",
-    help="Result file, or the folder of a study's files [default: the name of the material or study].",
+    help="Result file, or the folder of a study's files [default: the name of the material or study; of shards, with "
+    ".shards behind it].",
 )
 @simulation_options
 @click.option("--seed", type=Count(), metavar="S", help="Seed of the random numbers.")
@@ -93,6 +94,8 @@ def simulate(
         home = output or (config if Path(config).is_dir() else None)
         times = seconds_of(time_limit), seconds_of(checkpoint)
         ctx.exit(shards.trace(described, shard, home, *times, quiet, verbose))
+    if (Path(config) / "plan.json").is_file():
+        raise click.UsageError(f"{config} is a folder of shards: say which with --shard, or name a scene or study file")
     described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     many = described.study is not None
     planned = jobs.plan(described.scenes, output, folder=Path(output or described.study) if many else None)

@@ -26,8 +26,9 @@ def submit(config, output, slurm, walltime, shards, cpus, overrides, sbatch_opti
     """Submit CONFIG as a job array, with the merge that follows it.
 
     CONFIG is a scene or a study file; it is planned as by `goniosim plan` into DIR. If DIR has its plan
-    already, or CONFIG is such a folder, the scripts there are taken as they are, and only shards that are
-    neither done nor running are submitted. What stands behind -- are options of sbatch.
+    already, or CONFIG is such a folder, the scripts there are taken as they are (so without --walltime and
+    --cpus), and only shards that are neither done nor running are submitted. What stands behind -- are options
+    of sbatch.
 
     \b
     Examples: goniosim submit study.yaml --slurm --walltime 2h -o shards -- --partition=long
@@ -57,7 +58,8 @@ def submit(config, output, slurm, walltime, shards, cpus, overrides, sbatch_opti
             _refuse_changes(folder, {"walltime": walltime, "cpus": cpus})
             there.require_same(there.make(described.scenes, described.study, shards or there.shards), folder)
     there.require_version(folder)
-    found = look(folder)
+    # What the merge has found to be damaged is to be run again.
+    found = look(folder, whole=True)
     numbers = [shard.number for shard in found.of(Stage.MISSING, Stage.STOPPED, Stage.FAILED)]
     out = result_of(there, folder)
     if not numbers:

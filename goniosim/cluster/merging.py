@@ -1,5 +1,6 @@
 """All shards of a folder joined: to the results of one plain run."""
 
+import shlex
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
@@ -129,10 +130,11 @@ def _incomplete(folder: StrPath, lacking: dict[Task, Standing]) -> UnusableResul
     shards = array_list([task.shard for task in lacking])
     lines = [_line(task, there, folder) for task, there in lacking.items()]
     shown = [*lines[:20], *([f"and {len(lines) - 20} more"] if len(lines) > 20 else [])]
+    hand = f"goniosim simulate {shlex.quote(str(folder))} --shard {next(iter(lacking)).shard}"
     count = f"{len(lines)} of its files are" if len(lines) > 1 else "one of its files is"
     return UnusableResultError(
         f"{folder}: {count} missing, not finished or damaged, and nothing was written; run these shards again: "
-        f"--array={shards} (or merge what is there with --allow-missing)",
+        f"--array={shards} (by hand: {hand}), or merge what is there with --allow-missing",
         shown,
     )
 

@@ -195,11 +195,13 @@ def plan_of(folder: StrPath, asked: ShardPlan) -> ShardPlan:
     Raises
     ------
     OutputError
-        If another one stands there, or it cannot be written.
+        If another one stands there, or other files do, or it cannot be written.
     UnusableResultError
         If that there is of another version of goniosim.
     """
     if not (Path(folder) / NAME).exists():
+        if results := sorted(path.name for path in Path(folder).glob("*.h5") if ".shard-" not in path.name):
+            raise OutputError(f"{folder}: holds other files, such as {results[0]}: give shards a folder of their own")
         # Whoever comes at the same time writes the same.
         asked.write(folder)
         return asked

@@ -124,7 +124,8 @@ def spread(
     except (BrokenExecutor, CancelledError) as error:
         raise RefusalError(
             f"{folder}: a shard was given up: its process, or the scheduler, was ended by somebody or for want of "
-            "memory; what is done stays: run this again, with fewer processes if memory is short"
+            "memory; what is done stays: run this again, with fewer processes if memory is short (a script that starts "
+            'processes must do so below `if __name__ == "__main__":`)'
         ) from error
     finally:
         if pending:

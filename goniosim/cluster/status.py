@@ -100,13 +100,15 @@ class Status:
         return left * sum(shard.seconds for shard in timed) / work if work > 0.0 else None
 
 
-def look(folder):
+def look(folder, *, whole=False):
     """See how far the shards of a folder are.
 
     Parameters
     ----------
     folder : path-like
         With a plan.
+    whole : bool
+        Whether every byte is checked, so that what a disk has damaged counts as failed.
 
     Returns
     -------
@@ -132,12 +134,12 @@ def look(folder):
         mine = sum(rays[task.first : task.end])
         return mine, weight[id(task.scene)] * mine / sum(rays)
 
-    found = [_shard(number, division.tasks(number), folder, plan, parts) for number in range(1, plan.shards + 1)]
+    found = [_shard(number, division.tasks(number), folder, plan, parts, whole) for number in range(1, plan.shards + 1)]
     return Status(plan, found)
 
 
-def _shard(number, tasks, folder, plan, parts):
-    standings = [standing_of(task, folder) for task in tasks]
+def _shard(number, tasks, folder, plan, parts, whole):
+    standings = [standing_of(task, folder, whole=whole) for task in tasks]
     sizes = [parts(task) for task in tasks]
     done_rays, done_work, seconds = 0, 0.0, 0.0
     for task, standing, (rays, work) in zip(tasks, standings, sizes, strict=True):

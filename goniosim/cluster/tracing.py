@@ -14,6 +14,7 @@ from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.standing import Standing, State, standing_of
 from goniosim.engine import Traced, checked_state, simulate, trace_portion
 from goniosim.errors import (
+    DamagedFileError,
     FewerRaysError,
     GoniosimError,
     InUseError,
@@ -170,6 +171,9 @@ def _left(path: Path, note: Callable[[str], object]) -> tuple[bytes | None, int]
         checked_state(state)
     except UnreadableFileError:
         raise
+    except DamagedFileError:
+        # Of which there was a word already.
+        return None, 0
     except GoniosimError as error:
         note(f"{path}: begins anew: {error}")
         return None, 0

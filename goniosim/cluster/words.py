@@ -45,6 +45,10 @@ def outlook_text(outlook):
         f"  shards   {plan.shards}, each about {text.duration(outlook.each)}; "
         f"a task may take {text.duration(outlook.walltime)}",
     ]
+    if plan.has_targets and plan.shards > len(plan.scenes):
+        lines.append(
+            f"  Warning: a material with a target is never cut: {len(plan.scenes)} shards are all that have work"
+        )
     if outlook.each > outlook.walltime:
         lines.append(
             "  Warning: a shard takes longer than a task may: tasks will stop and queue again until all is done"

@@ -61,7 +61,7 @@ def test_what_a_shard_says(goniosim, folder, monkeypatch):
     monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "2")
     asked = ("simulate", "scene.yaml", *ANALOG, "--shard", "auto/3")
     code, out, err = goniosim(*asked)
-    assert code == 0 and out.splitlines()[0] == "shard 2 of 3: 1 files" and "100 % of its light paths" in out
+    assert code == 0 and out.splitlines()[0] == "shard 2 of 3: 1 file" and "100 % of its light paths" in out
     path = folder / "small.shards" / "small.shard-00002-of-00003.h5"
     before = path.read_bytes()
     assert goniosim(*asked)[0] == 0 and path.read_bytes() == before
@@ -114,7 +114,8 @@ def test_what_is_missing_is_named(goniosim, folder, three):
     assert lines[:2] == [f"shards/small.shard-0000{shard}-of-00003.h5: missing" for shard in (1, 3)]
     assert lines[2] == (
         "goniosim: error: shards: 2 of its files are missing, not finished or damaged, and nothing was written; "
-        "run these shards again: --array=1,3 (or merge what is there with --allow-missing)"
+        "run these shards again: --array=1,3 (by hand: goniosim simulate shards --shard 1), "
+        "or merge what is there with --allow-missing"
     )
     code, out, err = goniosim("merge", "shards", "-o", "merged.h5", "--allow-missing")
     assert code == 0 and "small  (partial)" in out and err.count("left out: ") == 2
@@ -185,6 +186,16 @@ def test_a_portion_is_no_result(goniosim, folder, three):
         code, out, err = goniosim(command, path)
         assert (code, out) == (8, "")
         assert f"{path}: holds a portion of a simulation; join it with the others by `goniosim merge`" in only_line(err)
+
+
+def test_shards_have_a_folder_of_their_own(goniosim, folder, three):
+    """Among results they would stand in the way of whatever takes the folder."""
+    (folder / "results").mkdir()
+    (folder / "results" / "mine.h5").write_bytes(b"")
+    code, _, err = goniosim("simulate", "scene.yaml", "--shard", "1/3", "-o", "results")
+    assert code == 4 and "holds other files, such as mine.h5" in only_line(err)
+    code, _, err = goniosim("simulate", "shards")
+    assert code == 2 and "shards is a folder of shards: say which with --shard" in err
 
 
 def test_a_folder_that_is_none_of_shards(goniosim, folder):

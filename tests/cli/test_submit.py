@@ -71,6 +71,21 @@ def test_only_what_is_missing_is_submitted_again(folder, goniosim, sbatch):
     assert out.endswith("goniosim merge 'my shards' -o 'my shards/results'\n") and "nothing to submit" in out
 
 
+def test_what_a_disk_has_damaged_is_submitted_again(folder, goniosim, sbatch):
+    """As the merge says, which looks at every byte."""
+    goniosim(*SUBMIT)
+    sbatch()
+    for number in (1, 2, 3):
+        run_shard("my shards", number, threads=1)
+    path = next((folder / "my shards").glob("*00002-of*.h5"))
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    assert goniosim("merge", "my shards", "-o", "merged")[0] == 8
+    code, out, _ = goniosim("submit", "my shards", "--slurm")
+    assert code == 0 and "1 shard of 3 submitted" in out and sbatch()[0][1] == "--array=2"
+
+
 def test_what_is_planned_cannot_be_changed(folder, goniosim, sbatch):
     goniosim(*SUBMIT)
     code, _, err = goniosim("submit", "my shards", "--slurm", "--rays", "1e5", "--walltime", "2h")
