@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from .options import PATH, Count
-from .policy import debug_option, say
+from .policy import debug_option, say, say_error
 
 
 @click.command()
@@ -19,12 +19,13 @@ from .policy import debug_option, say
 @click.option("--overwrite", is_flag=True, help="Replace results of other scenes, or with more rays.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing but errors.")
 @debug_option
-def merge(sources, output, allow_missing, only, threads, overwrite, quiet):
+@click.pass_context
+def merge(ctx, sources, output, allow_missing, only, threads, overwrite, quiet):
     """Join the shards of a folder, or results of different seeds.
 
     SOURCES is the folder of `goniosim simulate --shard`: the numbers are those of one run to the last bit, whatever the
     number of shards. If some are missing, not finished or damaged, they are named as a list for --array, nothing is
-    written, and the exit code is 8.
+    written, and the exit code is 8. A target that its limits cut short is exit code 9, as of a plain run.
 
     Or SOURCES are result files of the same scene, each simulated with a --seed of its own: the result has the rays of
     all of them. Those with a seed in common are not independent, which is exit code 8.
@@ -36,9 +37,11 @@ def merge(sources, output, allow_missing, only, threads, overwrite, quiet):
     """  # noqa: D301
     from goniosim.cluster import merge as join
     from goniosim.cluster import merge_results
+    from goniosim.errors import TARGET_NOT_REACHED
     from goniosim.report.progress import make_progress
-    from goniosim.report.simulation import study
+    from goniosim.report.simulation import study, target
     from goniosim.report.simulation.summary import summary
+    from goniosim.scene import parse_scene
 
     from .signals import tidied_up
 
@@ -57,12 +60,18 @@ def merge(sources, output, allow_missing, only, threads, overwrite, quiet):
     progress = make_progress(None, quiet)
     with tidied_up():
         given = {"allow_missing": allow_missing, "overwrite": overwrite, "only": only, "threads": threads}
-        rows, last = [], None
+        rows, missed, last = [], [], None
         for result, path in join(sources[0], output, note=progress.note, **given):
             last = summary(result, path)
             rows.append(study.row(result, path))
+            if result.target_reached is False and result.status == "complete":
+                missed.append(f"{path}: {target.shortfall(parse_scene(result.config_yaml).simulation)}")
     if not quiet and rows:
         say(study.study_text(rows) if len(rows) > 1 else last)
+    for line in missed:
+        say_error(line)
+    if missed:
+        ctx.exit(TARGET_NOT_REACHED)
 
 
 def _check_results(sources, of_shards):

@@ -49,6 +49,29 @@ def tidied_up():
             signal.signal(signum, handler)
 
 
+def told_to_stop_early():
+    """From now on a signal to stop ends the command at once: there is nothing to keep yet, and it is to be run again.
+
+    Returns
+    -------
+    callable
+        Puts everything back.
+    """
+
+    def end(signum, frame):
+        with contextlib.suppress(OSError):
+            os.write(2, f"goniosim: stopped by {(NAMES | WARNINGS)[signum]} before the first rays\n".encode())
+        os._exit(UNFINISHED)
+
+    earlier = _handle_all(end, {signum: name for signum, name in (NAMES | WARNINGS).items() if signum != signal.SIGINT})
+
+    def put_back():
+        for signum, handler in earlier.items():
+            signal.signal(signum, handler)
+
+    return put_back
+
+
 @contextlib.contextmanager
 def undisturbed():
     """Let signals wait until some files have been moved: moments."""

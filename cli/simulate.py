@@ -7,7 +7,7 @@ import click
 
 from .options import PATH, Count, Quantity, overrides_of, seconds_of, set_option, simulation_options
 from .policy import debug_option, say, say_error
-from .signals import StopSignals
+from .signals import StopSignals, told_to_stop_early
 
 
 @click.command()
@@ -76,6 +76,7 @@ def simulate(
     """  # noqa: D301
     if output == "-":
         raise click.UsageError("a result is a file, not a stream: name it with -o")
+    ctx.call_on_close(told_to_stop_early())
     from goniosim.engine import require_memory
     from goniosim.errors import TARGET_NOT_REACHED
     from goniosim.report.progress import make_progress

@@ -79,13 +79,15 @@ class InUseError(OutputError):
 
 
 class FewerRaysError(OutputError):
-    """What stands at the output has more rays of the same scene than what should replace it.
+    """What stands at the output is worth more, of the same scene, than what should replace it.
 
     Parameters
     ----------
     path : path-like
     held, offered : str
         Rays per direction of either, in the mean.
+    more : str
+        What else there is to say of the two.
 
     Attributes
     ----------
@@ -93,8 +95,9 @@ class FewerRaysError(OutputError):
         The message without its remedy.
     """
 
-    def __init__(self, path: object, held: str, offered: str) -> None:
-        self.fact = f"{path} stays as it is: it holds {held} rays per direction of this scene, the new result {offered}"
+    def __init__(self, path: object, held: str, offered: str, more: str = "") -> None:
+        facts = f"it holds {held} rays per direction of this scene, the new result {offered}{more}"
+        self.fact = f"{path} stays as it is: {facts}"
         super().__init__(f"{self.fact}; choose another name, or allow overwriting")
 
 

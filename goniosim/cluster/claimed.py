@@ -14,7 +14,7 @@ _POLL_SECONDS = 2.0
 
 
 @contextlib.contextmanager
-def claimed(path: Path, stop: threading.Event, note: Callable[[str], object]) -> Iterator[Claim]:
+def claimed(path: Path, stop: threading.Event, note: Callable[[str], object] = lambda _: None) -> Iterator[Claim]:
     """While active, no other process works on an output.
 
     On this machine it is known at once who lives. Of a task that was begun on another one, which a batch system has

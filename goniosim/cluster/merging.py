@@ -1,9 +1,11 @@
 """All shards of a folder joined: to the results of one plain run."""
 
 import shlex
+import threading
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
+from goniosim.cluster.claimed import claimed
 from goniosim.cluster.division import Division, Task
 from goniosim.cluster.plan_file import ShardPlan
 from goniosim.cluster.shard import array_list
@@ -13,7 +15,7 @@ from goniosim.errors import ConfigError, OutputError, UnusableResultError
 from goniosim.result import Result
 from goniosim.scene import with_arguments
 from goniosim.store import open_result, read_portion, write_result
-from goniosim.writing import StrPath, make_folder
+from goniosim.writing import StrPath, explained, make_folder
 
 _WORDS = {State.MISSING: "missing", State.PARTIAL: "not finished"}
 
@@ -61,7 +63,7 @@ def merge(
         If shards are missing, not finished, damaged, there twice, or of another version of goniosim; it names those to
         run again.
     OutputError
-        If a file cannot be written, or something else stands in the place of a shard.
+        If a file cannot be written, another process is at work on it, or something else stands in the place of a shard.
     """
     plan = ShardPlan.read(folder)
     plan.require_version(folder)
@@ -89,13 +91,15 @@ def merge(
             note(f"left out: {scene.material.name}: nothing of it is there")
             continue
         path = Path(out) / f"{scene.material.name}.h5" if plan.study is not None else Path(out)
-        result = _joined(usable, folder, threads)
-        if result.status != "complete" and lacking.keys().isdisjoint(mine):
-            raise UnusableResultError(
-                f"{folder}: {scene.material.name}: its shards hold less than they say; run all again"
-            )
-        result.provenance["merged"] = words
-        write_result(result, path, overwrite=overwrite)
+        with explained(path), claimed(path, threading.Event(), note):
+            result = _joined(usable, folder, threads)
+            if result.status != "complete" and lacking.keys().isdisjoint(mine):
+                raise UnusableResultError(
+                    f"{folder}: {scene.material.name}: its shards hold less than they say; run all again"
+                )
+            result.provenance["merged"] = words
+            # Nothing is lost if it cannot be written: the shards are there.
+            write_result(result, path, overwrite=overwrite, rescued=False)
         yield result, path
 
 

@@ -8,9 +8,10 @@ from pathlib import Path
 from goniosim.claims import owner_of
 from goniosim.cluster.division import Division
 from goniosim.cluster.plan_file import ShardPlan
-from goniosim.cluster.standing import State, standing_of
+from goniosim.cluster.standing import Standing, State, standing_of
 from goniosim.cluster.tracing import error_path
 from goniosim.engine import piece_rays
+from goniosim.errors import OutputError
 
 # Of what a shard says of its error.
 _LONGEST = 2000
@@ -118,8 +119,6 @@ def look(folder, *, whole=False):
     ------
     ForeignFileError
         If there is no plan.
-    OutputError
-        If something else stands in the place of a shard.
     """
     plan = ShardPlan.read(folder)
     division, weight = Division(plan), dict(zip(map(id, plan.scenes), plan.weights, strict=True))
@@ -139,7 +138,7 @@ def look(folder, *, whole=False):
 
 
 def _shard(number, tasks, folder, plan, parts, whole):
-    standings = [standing_of(task, folder, whole=whole) for task in tasks]
+    standings = [_standing(task, folder, whole) for task in tasks]
     sizes = [parts(task) for task in tasks]
     done_rays, done_work, seconds = 0, 0.0, 0.0
     for task, standing, (rays, work) in zip(tasks, standings, sizes, strict=True):
@@ -165,6 +164,14 @@ def _shard(number, tasks, folder, plan, parts, whole):
     noise = max((standing.noise for standing in standings if standing.noise is not None), default=None)
     shown = (why or damaged) if stage is Stage.FAILED else ""
     return Shard(number, stage, done_rays, total_rays, done_work, total_work, seconds, noise, shown)
+
+
+def _standing(task, folder, whole):
+    try:
+        return standing_of(task, folder, whole=whole)
+    except OutputError as error:
+        # Of somebody else: a word on it, and on with the other shards.
+        return Standing(State.DAMAGED, why=str(error))
 
 
 def _failure(folder, number, shards):

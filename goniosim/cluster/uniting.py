@@ -1,15 +1,17 @@
 """Results of the same scene and different seeds joined to a better one."""
 
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from goniosim.cluster.claimed import claimed
 from goniosim.engine import seeds_of, unite
 from goniosim.errors import UnusableResultError
 from goniosim.result import Result
 from goniosim.scene import Scene, differences, with_arguments
 from goniosim.store import open_result, read_header, read_scene, write_result
-from goniosim.writing import StrPath
+from goniosim.writing import StrPath, explained
 
 
 def merge_results(paths: Sequence[StrPath], out: StrPath, *, overwrite: bool = False) -> Result:
@@ -46,7 +48,8 @@ def merge_results(paths: Sequence[StrPath], out: StrPath, *, overwrite: bool = F
             result = unite(result, other)
         except UnusableResultError as error:
             raise UnusableResultError(f"{path}: cannot be merged: {error}") from error
-    write_result(result, out, overwrite=overwrite)
+    with explained(out), claimed(Path(out), threading.Event()):
+        write_result(result, out, overwrite=overwrite, rescued=False)
     return result
 
 

@@ -17,7 +17,7 @@ from .unit import child_key
 # Child of the seed's key, for what is traced besides what is there.
 BRANCH = 6
 # Words of a result that hold for one that goes on from it.
-LASTING = ("estimator_gain", "merged", "merged_seeds")
+LASTING = ("estimator_gain", "merged_seeds")
 
 
 @dataclass(eq=False)

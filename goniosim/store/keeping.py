@@ -1,13 +1,15 @@
 """What may replace a result unasked: one of the same scene that is worth no less, or anything if it is damaged.
 
-Rays are a measure of worth, since the estimator is part of the scene. Those of a target are not the same in all
-directions: they went where they were needed, and count together.
+Rays are a measure of worth for results of the same estimator. Those of a target are not the same in all directions:
+they went where they were needed, and count together. Results of different estimators, between which ``auto``
+chooses, are worth what their noise says.
 """
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import h5py
 import numpy as np
 
 from goniosim.errors import (
@@ -27,9 +29,12 @@ from goniosim.scene.model import LIMITS, MAX_DIRECTIONS
 from goniosim.scene.quantity import count
 from goniosim.store import access
 from goniosim.store.kinds import RESULT
+from goniosim.store.layout import COMPONENTS
+from goniosim.store.manifest import Manifest, NoManifest
 from goniosim.store.opening import decoding, opened
 from goniosim.store.output import reserve_output
 from goniosim.store.reader import read_header
+from goniosim.store.validation import MAX_CHECKPOINTS
 from goniosim.writing import StrPath
 
 
@@ -53,6 +58,10 @@ class Standing:
         Whether its target was reached; None if it had none.
     has_state : bool
         Whether an interrupted run of it can go on.
+    estimator : str
+        What made its sampled components.
+    noise : float
+        The largest of its components and directions, in sr^-1/2.
     """
 
     rays: np.ndarray | None = None
@@ -62,6 +71,8 @@ class Standing:
     simulation: Simulation | None = None
     target_reached: bool | None = None
     has_state: bool = False
+    estimator: str = ""
+    noise: float = 0.0
 
     def holds(self, asked: Simulation) -> bool:
         """Whether it is of the scene asked for, and gives what is asked for: the rays, or the accuracy.
@@ -88,14 +99,16 @@ class Standing:
         free = dict.fromkeys((*LIMITS, "threads"))
         return asked.model_copy(update=free) == self.simulation.model_copy(update=free)
 
-    def outweighs(self, rays: np.ndarray) -> bool:
-        """Whether it is of the scene asked for, with more rays, all directions together."""
-        return self.rays is not None and bool(self.rays.sum() > rays.sum())
+    def outweighs(self, result: Result) -> bool:
+        """Whether it is of the scene of a result and worth more: by its rays, or its noise if the estimators differ."""
+        if self.rays is None:
+            return False
+        if self.estimator == result.estimator:
+            return bool(self.rays.sum() > result.rays.sum())
+        return not result.rays.all() or self.noise < _noise_of(result)
 
 
-def look_at(
-    path: StrPath, scene: Scene | None, rays: np.ndarray | None = None, config_yaml: str = ""
-) -> Standing | None:
+def look_at(path: StrPath, scene: Scene | None, result: Result | None = None) -> Standing | None:
     """See what stands at the place of an output.
 
     Cheap, unless it is to stay: then every byte of the file is checked, so that nobody relies on a damaged one.
@@ -105,10 +118,8 @@ def look_at(
     path : path-like
     scene : Scene or None
         What is asked for; None if ``config_yaml`` cannot be read.
-    rays : ndarray of int64, shape (M,), optional
-        Of a result that is to go there. Without it, the result is still to be made.
-    config_yaml : str
-        A text that stands for the scene too.
+    result : Result, optional
+        That is to go there. Without it, it is still to be made.
 
     Returns
     -------
@@ -123,11 +134,11 @@ def look_at(
     try:
         header = read_header(path)
         there = str(header.get("config_yaml", ""))
-        found = () if there == config_yaml else _differences(there, scene)
+        found = () if result is not None and there == result.config_yaml else _differences(there, scene)
         if found:
             return Standing(differences=found)
         standing = _standing(path, header)
-        if standing.outweighs(rays) if rays is not None else scene is not None and standing.holds(scene.simulation):
+        if standing.outweighs(result) if result is not None else scene is not None and standing.holds(scene.simulation):
             _verify(path)
     except DamagedFileError as error:
         return Standing(damage=str(error))
@@ -162,11 +173,11 @@ def check_replacement(path: StrPath, result: Result) -> None:
     Raises
     ------
     FewerRaysError
-        A sound result of the same scene with more rays.
+        A sound result of the same scene that is worth more.
     OutputError
         A result of another scene, or no result.
     """
-    found = look_at(path, _scene(result.config_yaml), result.rays, result.config_yaml)
+    found = look_at(path, _scene(result.config_yaml), result)
     if found is None or found.damage:
         return
     if found.rays is None:
@@ -174,8 +185,16 @@ def check_replacement(path: StrPath, result: Result) -> None:
             f"{path}: holds the result of another scene ({'; '.join(found.differences)}), so it is not overwritten; "
             "choose another name, or allow overwriting"
         )
-    if found.outweighs(result.rays):
-        raise FewerRaysError(path, count(found.rays.mean()), count(result.rays.mean()))
+    if found.outweighs(result):
+        more = ""
+        if found.estimator != result.estimator:
+            more = f", by {found.estimator} with a noise of {found.noise:.2g} sr^-1/2, by {result.estimator} with "
+            more += f"{_noise_of(result):.2g}"
+        raise FewerRaysError(path, count(found.rays.mean()), count(result.rays.mean()), more)
+
+
+def _noise_of(result: Result) -> float:
+    return max((float(error[:, -1].max()) for error in result.cost.error.values() if error.size), default=0.0)
 
 
 def _differences(there: str, asked: Scene | None) -> tuple[str, ...]:
@@ -195,10 +214,12 @@ def _scene(config_yaml: str) -> Scene | None:
 def _standing(path: StrPath, header: Mapping[str, str | int]) -> Standing:
     scene = _scene(str(header["config_yaml"]))
     reached = header.get("target_reached")
-    rays, has_state = _look_into(path)
+    rays, has_state, noise = _look_into(path)
     return Standing(
         rays=rays,
         has_state=has_state,
+        estimator=str(header.get("estimator", "")),
+        noise=noise,
         status=str(header["status"]),
         simulation=scene.simulation if scene else None,
         target_reached=None if reached is None else bool(reached),
@@ -217,14 +238,23 @@ def _verify(path: StrPath) -> None:
         pass
 
 
-def _look_into(path: StrPath) -> tuple[np.ndarray, bool]:
-    """Rays traced from each direction, shape (M,), and whether there is a state, without reading the whole file."""
+def _look_into(path: StrPath) -> tuple[np.ndarray, bool, float]:
+    """Rays traced from each direction, shape (M,), whether there is a state, and the noise; not the whole file."""
     with opened(path, RESULT, whole=False) as (file, ours), decoding(path, RESULT.remedy):
         rays = access.dataset(file, "incident/rays")
         # Read only what cannot be huge.
         if len(rays.shape) == 1 and rays.shape[0] <= MAX_DIRECTIONS:
-            return access.read(rays).astype(np.int64, casting="safe"), ours.has("state")
+            return access.read(rays).astype(np.int64, casting="safe"), ours.has("state"), _noise(file, ours)
     raise DamagedFileError(f"{path}: does not say how many rays were traced; {RESULT.remedy}")
+
+
+def _noise(file: h5py.File, ours: Manifest | NoManifest) -> float:
+    found = 0.0
+    for path in (f"cost/error_{name.replace('/', '_')}" for name in COMPONENTS):
+        error = access.dataset(file, path) if ours.has(path) else None
+        if error is not None and error.size and error.size <= MAX_DIRECTIONS * MAX_CHECKPOINTS:
+            found = max(found, float(access.read(error)[..., -1].max()))
+    return found
 
 
 def _not_overwritten(error: GoniosimError) -> OutputError:

@@ -5,7 +5,8 @@ import signal
 
 import pytest
 
-from goniosim.errors import NewerSchemaError, OutputError
+from goniosim import load_scene, simulate
+from goniosim.errors import FewerRaysError, NewerSchemaError, OutputError
 from goniosim.store import open_result, write_result
 from synthetic import write_models
 
@@ -47,6 +48,27 @@ def test_more_rays_replace_it_and_nothing_is_left_beside(goniosim, folder, small
     assert goniosim("simulate", "scene.yaml", "-q", "--rays", "3e3") == (0, "", "")
     assert open_result(small).rays.tolist() == [3000]
     assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "small.h5", "study.yaml"]
+
+
+@pytest.mark.parametrize("first, second", [("analog", "split"), ("split", "analog")])
+def test_between_estimators_noise_is_the_measure(folder, first, second):
+    """Rays are not: a few of a better estimator tell more than many independent ones."""
+    scene = load_scene("scene.yaml")
+    made = {name: simulate(scene, estimator=name, rays=rays) for name, rays in (("analog", 4e5), ("split", 1.4e5))}
+    for result in made.values():
+        result.config_yaml = scene.to_yaml()
+    assert made["split"].rays.sum() < made["analog"].rays.sum()
+    write_result(made[first], "small.h5")
+    if second == "split":
+        write_result(made[second], "small.h5")
+    else:
+        with pytest.raises(FewerRaysError, match="by split with a noise of .*, by analog with "):
+            write_result(made[second], "small.h5")
+    assert open_result("small.h5").estimator == "split"
+    # Nobody knows what a direction will have that was not begun.
+    made["split"].rays[:] = 0
+    with pytest.raises(FewerRaysError):
+        write_result(made["split"], "small.h5")
 
 
 def interrupt(monkeypatch, rays):

@@ -6,6 +6,7 @@ import signal
 
 import pytest
 
+from goniosim.claims import Claim
 from goniosim.cluster import error_path
 from goniosim.store import open_result, read_portion
 from impatient import IMPATIENT, wait_for
@@ -95,6 +96,23 @@ def test_a_material_with_a_target_is_one_shards_own(goniosim, folder):
     code, _, err = goniosim("merge", "shards", "-o", "again", "-q")
     shard = 1 if json.loads((folder / "shards" / "plan.json").read_text())["weights"][0] > 1 else 2
     assert code == 8 and f"--array={shard} " in err and "coat-0.2.h5: missing" in err
+
+
+def test_a_target_that_is_missed_is_said_by_the_merge(goniosim, folder):
+    """As by a plain run."""
+    asked = ("scene.yaml", "-q", "--target", "1e-4", "--max-rays", "2e3")
+    assert goniosim("simulate", *asked, "--shard", "1/1", "-o", "shards")[0] == 0
+    code, out, err = goniosim("merge", "shards", "-o", "merged.h5", "-q")
+    assert (code, out) == (9, "") and "merged.h5: the target of 0.01 % of slice was not reached" in only_line(err)
+    assert goniosim("simulate", *asked, "-o", "plain.h5")[0] == 9
+    assert datasets(folder / "plain.h5") == datasets(folder / "merged.h5")
+
+
+def test_a_merge_leaves_alone_what_another_process_works_on(goniosim, folder, three):
+    with Claim(folder / "merged.h5"):
+        code, _, err = goniosim("merge", "shards", "-o", "merged.h5")
+        assert code == 4 and "merged.h5: another process is at work on it" in only_line(err)
+    assert goniosim("merge", "shards", "-o", "merged.h5", "-q")[0] == 0
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -152,7 +153,8 @@ def test_rays_that_a_target_spread_count_together():
     spread = Standing(np.array([500, 3500]), (), "complete", "", asked["target"], True)
     partial = Standing(np.array([500, 3500]), (), "partial", "", asked["rays"], None)
     assert (spread.holds(asked["rays"]), partial.holds(asked["rays"])) == (True, False)
-    assert spread.outweighs(np.array([1000, 1000])) and not spread.outweighs(np.array([2000, 2000]))
+    for rays, kept in ((1000, True), (2000, False)):
+        assert spread.outweighs(SimpleNamespace(rays=np.array([rays, rays]), estimator="")) == kept
     assert not partial.holds(asked["target"])
 
 
