@@ -11,7 +11,7 @@ from goniosim.errors import UnusableResultError
 from goniosim.result import Result
 from goniosim.scene import Scene, differences, with_arguments
 from goniosim.store import open_result, read_header, read_scene, write_result
-from goniosim.writing import StrPath, explained
+from goniosim.writing import StrPath, explained, make_folder
 
 
 def merge_results(paths: Sequence[StrPath], out: StrPath, *, overwrite: bool = False) -> Result:
@@ -48,6 +48,7 @@ def merge_results(paths: Sequence[StrPath], out: StrPath, *, overwrite: bool = F
             result = unite(result, other)
         except UnusableResultError as error:
             raise UnusableResultError(f"{path}: cannot be merged: {error}") from error
+    make_folder(Path(out).parent)
     with explained(out), claimed(Path(out), threading.Event()):
         write_result(result, out, overwrite=overwrite, rescued=False)
     return result
