@@ -1,6 +1,8 @@
 """How datasets and texts are put into HDF5: the same for results and for integrated models."""
 
 import hashlib
+import io
+from collections.abc import Mapping
 from typing import Any
 
 import h5py
@@ -8,6 +10,7 @@ import numpy as np
 
 from goniosim.store import chunks, manifest, seal
 from goniosim.store.access import chunk_shape
+from goniosim.store.kinds import Kind
 from goniosim.store.layout import CHECKSUMS, SCALES, Dataset, angles_of
 
 # Any HDF5 since 1.10 (2016) can read this format, and the bytes do not depend on the installed one.
@@ -64,6 +67,33 @@ def reserve_seal(file: h5py.File) -> int:
     place = dataset.id.get_offset()
     assert place + seal.SIZE <= seal.WINDOW
     return place
+
+
+def write_attributes(file: h5py.File, attributes: Mapping[str, str | int]) -> None:
+    """Set texts and whole numbers as attributes of the root."""
+    for name, value in attributes.items():
+        if isinstance(value, int):
+            file.attrs[name] = np.uint64(value)
+        else:
+            write_text(file, name, value)
+
+
+def sealed(file: h5py.File, kind: Kind, place: int) -> tuple[memoryview | bytes, ...]:
+    """Bytes of a file in memory, after everything else is written: what comes before the seal, the seal, the rest.
+
+    Parameters
+    ----------
+    file : h5py.File
+    kind : goniosim.store.kinds.Kind
+    place : int
+        Of the seal, see `reserve_seal`.
+    """
+    content_digest = write_manifest(file)
+    file.flush()
+    image = file.id.get_file_image()
+    digest = seal.digest(io.BytesIO(image), place)
+    view = memoryview(image)
+    return view[:place], seal.make(kind, len(image), digest, content_digest), view[place + seal.SIZE :]
 
 
 def write_manifest(file: h5py.File) -> str:

@@ -1,6 +1,5 @@
 """Portions of simulations on the disk: what a shard has of one material, until all are joined."""
 
-import io
 import math
 import uuid
 from collections.abc import Mapping
@@ -8,12 +7,11 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import h5py
-import numpy as np
 
 from goniosim.errors import OutputError
-from goniosim.store import access, seal
+from goniosim.store import access
 from goniosim.store.decoding import shaped, values
-from goniosim.store.encoding import FORMAT, reserve_seal, write_dataset, write_manifest, write_text
+from goniosim.store.encoding import FORMAT, reserve_seal, sealed, write_attributes, write_dataset
 from goniosim.store.kinds import PORTION
 from goniosim.store.layout import describe
 from goniosim.store.opening import decoding, opened
@@ -151,16 +149,6 @@ def _encode(portion: Portion, state: bytes) -> tuple[memoryview | bytes, ...]:
     with h5py.File(uuid.uuid4().hex, "w", driver="core", backing_store=False, libver=FORMAT) as file:
         place = reserve_seal(file)
         write_dataset(file, "state", state, describe("state"))
-        write_text(file, "filetype", PORTION.filetype)
-        write_text(file, "schema_version", PORTION.schema_version)
-        for name, value in asdict(portion).items():
-            if isinstance(value, int):
-                file.attrs[name] = np.uint64(value)
-            else:
-                write_text(file, name, value)
-        content_digest = write_manifest(file)
-        file.flush()
-        image = file.id.get_file_image()
-    digest = seal.digest(io.BytesIO(image), place)
-    view = memoryview(image)
-    return view[:place], seal.make(PORTION, len(image), digest, content_digest), view[place + seal.SIZE :]
+        kind = {"filetype": PORTION.filetype, "schema_version": PORTION.schema_version}
+        write_attributes(file, {**kind, **asdict(portion)})
+        return sealed(file, PORTION, place)

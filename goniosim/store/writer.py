@@ -1,6 +1,5 @@
 """From a result in memory to the bytes of a file."""
 
-import io
 import uuid
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -9,8 +8,7 @@ import h5py
 import numpy as np
 
 from goniosim.result import Component, Result
-from goniosim.store import seal
-from goniosim.store.encoding import FORMAT, reserve_seal, utf8, write_dataset, write_manifest, write_text
+from goniosim.store.encoding import FORMAT, reserve_seal, sealed, utf8, write_attributes, write_dataset, write_text
 from goniosim.store.kinds import RESULT
 from goniosim.store.layout import COMPONENTS, FILETYPE, NOT_PROVENANCE, SCHEMA_VERSION, describe
 from goniosim.sums import BLOCKS, block_starts
@@ -65,17 +63,8 @@ def encode(result: Result) -> tuple[memoryview | bytes, ...]:
         effects = file.create_group("effects")
         for name, called_for in result.effects.items():
             effects.attrs[name] = np.int8(called_for)
-        for name, value in attributes.items():
-            if isinstance(value, int):
-                file.attrs[name] = np.uint64(value)
-            else:
-                write_text(file, name, value)
-        content_digest = write_manifest(file)
-        file.flush()
-        image = file.id.get_file_image()
-    digest = seal.digest(io.BytesIO(image), place)
-    view = memoryview(image)
-    return view[:place], seal.make(RESULT, len(image), digest, content_digest), view[place + seal.SIZE :]
+        write_attributes(file, attributes)
+        return sealed(file, RESULT, place)
 
 
 def _batches_of(result: Result) -> np.ndarray | None:

@@ -41,3 +41,10 @@ def make_scene(layers, theta_deg, parametrization="classic", rows=90, columns=36
             "simulation": {"rays": 100_000, "seed": 1, **simulation},
         }
     )
+
+
+# A stack for each estimator: operator; two of them, one for each way out; split; connection.
+METAL = [dielectric(1.5, 0.3), medium([0.05, 0.1, 0.8]), conductor(1.45, [1.0, 0.5, 0.5], 0.3)]
+SLAB = [dielectric(1.5, 0.001), medium(0.2), dielectric(1.0, 0.3)]
+NARROW = [dielectric(1.5, 0.01), conductor(1.45, 1.0, 0.01)]
+PLASTIC = [dielectric(1.5, 0.1), lambert(0.5)]

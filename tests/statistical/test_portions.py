@@ -10,13 +10,9 @@ from goniosim.engine.drive import Drive
 from goniosim.engine.plan import make_plan
 from goniosim.engine.portion import Portion
 from goniosim.scene import with_arguments
-from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+from reference.scenes import METAL, NARROW, PLASTIC, SLAB, make_scene
 from sameness import content
 
-METAL = [dielectric(1.5, 0.3), medium([0.05, 0.1, 0.8]), conductor(1.45, [1.0, 0.5, 0.5], 0.3)]
-SLAB = [dielectric(1.5, 0.001), medium(0.2), dielectric(1.0, 0.3)]
-NARROW = [dielectric(1.5, 0.01), conductor(1.45, 1.0, 0.01)]
-PLASTIC = [dielectric(1.5, 0.1), lambert(0.5)]
 CASES = {
     "analog": (METAL, {"orders": 2}, {"rays": 20_000, "estimator": "analog"}),
     "connection": (PLASTIC, {}, {"rays": 131_072}),

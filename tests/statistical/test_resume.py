@@ -10,12 +10,8 @@ from goniosim.engine.packing import pack, unpack
 from goniosim.engine.plan import make_plan
 from goniosim.engine.session import Session
 from goniosim.scene import with_arguments
-from reference.scenes import conductor, dielectric, lambert, make_scene, medium
+from reference.scenes import METAL, NARROW, PLASTIC, SLAB, make_scene
 
-METAL = [dielectric(1.5, 0.3), medium([0.05, 0.1, 0.8]), conductor(1.45, [1.0, 0.5, 0.5], 0.3)]
-SLAB = [dielectric(1.5, 0.001), medium(0.2), dielectric(1.0, 0.3)]
-NARROW = [dielectric(1.5, 0.01), conductor(1.45, 1.0, 0.01)]
-PLASTIC = [dielectric(1.5, 0.1), lambert(0.5)]
 # What `auto` does with the fewest paths for replicates, in a round of its own for each; independent paths in sixteen
 # units for each direction.
 CASES = {
