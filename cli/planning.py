@@ -81,9 +81,8 @@ def look_ahead(described, walltime, shards, cpus, there=None):
 def plan_in(folder):
     """The plan that stands in a folder, None without one."""
     from goniosim.cluster import ShardPlan
-    from goniosim.cluster.plan_file import NAME
 
-    return ShardPlan.read(folder) if (Path(folder) / NAME).exists() else None
+    return ShardPlan.find(folder)
 
 
 def write(outlook, folder, options):

@@ -87,14 +87,13 @@ def trace(described, text, output, time_limit, every, quiet, verbose):
     quiet, verbose : bool
     """
     from goniosim.cluster import Division, ShardPlan, parse_shard, plan_of, run_shard
-    from goniosim.cluster.plan_file import NAME
     from goniosim.errors import StoppedError
     from goniosim.report.progress import make_progress
     from goniosim.report.simulation.forecast import effects_text
 
     folder = Path(output or f"{described.study or described.scenes[0].material.name}.shards")
-    planned = ShardPlan.read(folder).shards if (folder / NAME).exists() else None
-    number, count = parse_shard(text, planned)
+    there = ShardPlan.find(folder)
+    number, count = parse_shard(text, there and there.shards)
     plan = plan_of(folder, ShardPlan.make(described.scenes, described.study, count))
     progress = make_progress(Division(plan).rays(number), quiet)
     with StopSignals(time_limit) as signals, contextlib.closing(progress):

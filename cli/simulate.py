@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from .options import PATH, Count, Quantity, overrides_of, seconds_of, set_option, simulation_options
+from .planning import plan_in
 from .policy import debug_option, say, say_error
 from .signals import StopSignals, told_to_stop_early
 
@@ -95,7 +96,7 @@ def simulate(
         home = output or (config if Path(config).is_dir() else None)
         times = seconds_of(time_limit), seconds_of(checkpoint)
         ctx.exit(shards.trace(described, shard, home, *times, quiet, verbose))
-    if (Path(config) / "plan.json").is_file():
+    if Path(config).is_dir() and plan_in(config) is not None:
         raise click.UsageError(f"{config} is a folder of shards: say which with --shard, or name a scene or study file")
     described = shards.only(load_config(config, [*overrides, *overrides_of(asked)]), only)
     many = described.study is not None

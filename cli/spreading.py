@@ -1,7 +1,5 @@
 """The materials of one command in shards, on workers of dask: traced, merged, and the shards removed."""
 
-from pathlib import Path
-
 _INSTALL = 'pip install "goniosim[dask]"'
 
 
@@ -59,11 +57,10 @@ def run(address, described, planned, todo, output, progress, signals, overwrite,
 def _asked(described, todo, folder, slots, address):
     """What is to be in shards: what is missing, with what was missing when a run began that was interrupted."""
     from goniosim.cluster import ShardPlan
-    from goniosim.cluster.plan_file import NAME
     from goniosim.cluster.spreading import SHARDS_PER_THREAD
     from goniosim.errors import RefusalError
 
-    there = ShardPlan.read(folder) if (Path(folder) / NAME).exists() else None
+    there = ShardPlan.find(folder)
     if there is None and not slots:
         raise RefusalError(
             f"--dask {address}: it has no workers; start some, which tells how many shards are worthwhile"

@@ -62,7 +62,8 @@ def spread_files(
         return
     beside = shards_folder(folder)
     # With those that were missing when a call began that was interrupted.
-    begun = {scene.material.name for scene in ShardPlan.read(beside).scenes} if _has_plan(beside) else set()
+    there = ShardPlan.find(beside)
+    begun = {scene.material.name for scene in there.scenes} if there is not None else set()
     chosen = [scene for scene in scenes if scene.material.name in begun or scene.material.name not in files]
     with Stop(stop) as asked:
         if not _spread(chosen, beside, executor, shards, progress, asked):
@@ -87,7 +88,8 @@ def _spread(
     from ..cluster.spreading import SHARDS_PER_THREAD
 
     if shards is None:
-        shards = ShardPlan.read(folder).shards if _has_plan(folder) else SHARDS_PER_THREAD * available_cores()
+        there = ShardPlan.find(folder)
+        shards = there.shards if there is not None else SHARDS_PER_THREAD * available_cores()
     plan = plan_of(folder, ShardPlan.make(scenes, _STUDY, shards))
     whole = total_rays(scenes)
     with progress_of(progress, whole) as shown:
@@ -105,12 +107,6 @@ def _spread(
 
 def _threads(scenes: Sequence[Scene]) -> int | None:
     return scenes[0].simulation.threads
-
-
-def _has_plan(folder: Path) -> bool:
-    from ..cluster.plan_file import NAME
-
-    return (folder / NAME).exists()
 
 
 def _stopped(asked: Stop) -> BaseException:

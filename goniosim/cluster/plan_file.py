@@ -98,6 +98,11 @@ class ShardPlan:
         write_text(Path(folder) / NAME, json.dumps(content, indent=1) + "\n")
 
     @classmethod
+    def find(cls, folder: StrPath) -> Self | None:
+        """Read that of a folder, if it has one; errors as of `read`."""
+        return cls.read(folder) if (Path(folder) / NAME).exists() else None
+
+    @classmethod
     def read(cls, folder: StrPath) -> Self:
         """Read that of a folder.
 
@@ -199,13 +204,13 @@ def plan_of(folder: StrPath, asked: ShardPlan) -> ShardPlan:
     UnusableResultError
         If that there is of another version of goniosim.
     """
-    if not (Path(folder) / NAME).exists():
+    there = ShardPlan.find(folder)
+    if there is None:
         if results := sorted(path.name for path in Path(folder).glob("*.h5") if ".shard-" not in path.name):
             raise OutputError(f"{folder}: holds other files, such as {results[0]}: give shards a folder of their own")
         # Whoever comes at the same time writes the same.
         asked.write(folder)
         return asked
-    there = ShardPlan.read(folder)
     there.require_same(asked, folder)
     there.require_version(folder)
     return there
