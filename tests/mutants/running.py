@@ -1,0 +1,131 @@
+"""A copy of the source, in which tests are run with and without a mutant."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+
+from goniosim._jit.folder import _COMPILED
+
+from .catalogue import ROOT
+
+# A mutant may make the walk endless.
+LIMIT = 900.0
+# How the message of a test begins that looked at a number and found it wrong. All else is broken code.
+_ASSERTIONS = ("assert", "AssertionError", "Failed", "ExceptionGroup: Hypothesis")
+_WHOSE = "import goniosim, goniosim_cli; print(goniosim.__file__, goniosim_cli.__file__, sep='\\n')"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How tests ended.
+
+    Attributes
+    ----------
+    passed : bool
+        All of them, and there were some.
+    caught_by : str or None
+        The first test of which an assertion failed.
+    seconds : float
+    output : str
+    """
+
+    passed: bool
+    caught_by: str | None
+    seconds: float
+    output: str
+
+
+class Copy:
+    """A copy of the source in a folder of its own.
+
+    What is compiled is kept beside it: a folder for the source as it is, and one for each mutant of compiled code,
+    which is removed afterwards.
+    """
+
+    def __init__(self, folder):
+        self._folder, self._tree = folder, folder / "tree"
+        listed = subprocess.run(
+            ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+            cwd=ROOT,
+            capture_output=True,
+            check=True,
+        )
+        for name in filter(None, os.fsdecode(listed.stdout).split("\0")):
+            if (ROOT / name).is_file():
+                (self._tree / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(ROOT / name, self._tree / name)
+        (folder / "links").mkdir()
+        (folder / "links" / "goniosim_cli").symlink_to(self._tree / "cli")
+        self._require_own()
+
+    def run(self, tests):
+        """Run tests on the source as it is."""
+        return self._run(tests, self._folder / "compiled")
+
+    def run_with(self, mutant, size=None):
+        """Run the tests of a mutant."""
+        path = self._tree / mutant.file
+        source = path.read_text()
+        compiled = mutant.file.startswith(tuple(f"goniosim/{room}/" for room in _COMPILED))
+        cache = self._folder / ("mutant" if compiled else "compiled")
+        path.write_text(mutant.applied(source, size))
+        try:
+            return self._run(mutant.tests, cache)
+        finally:
+            # With its time: compiled code goes by it.
+            shutil.copy2(ROOT / mutant.file, path)
+            if compiled:
+                shutil.rmtree(cache, ignore_errors=True)
+
+    def _environment(self, cache):
+        known = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "NUMBA"))}
+        paths = os.pathsep.join(map(str, (self._tree, self._folder / "links")))
+        return known | {"PYTHONPATH": paths, "XDG_CACHE_HOME": str(cache), "PYTHONDONTWRITEBYTECODE": "1"}
+
+    def _require_own(self):
+        """An installation of goniosim must not come first."""
+        done = subprocess.run(
+            [sys.executable, "-c", _WHOSE],
+            cwd=self._folder,
+            env=self._environment(self._folder / "compiled"),
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        for found in done.stdout.split():
+            if not found.startswith(str(self._folder)):
+                raise RuntimeError(f"tests would see {found} instead of the copy in {self._folder}")
+
+    def _run(self, tests, cache):
+        cache.mkdir(exist_ok=True)
+        report = self._folder / "report.xml"
+        report.unlink(missing_ok=True)
+        command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", f"--junitxml={report}"]
+        began = time.monotonic()
+        try:
+            done = subprocess.run(
+                [*command, *tests],
+                cwd=self._tree,
+                env=self._environment(cache),
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                timeout=LIMIT,
+            )
+        except subprocess.TimeoutExpired:
+            return Verdict(False, None, time.monotonic() - began, f"not through after {LIMIT:.0f} s")
+        caught_by = _first_failure(report) if done.returncode == 1 else None
+        return Verdict(done.returncode == 0, caught_by, time.monotonic() - began, done.stdout)
+
+
+def _first_failure(report):
+    """The first test with an assertion that failed: ``file::name``; None if there is none."""
+    for case in ElementTree.parse(report).iter("testcase"):
+        for failure in case.iter("failure"):
+            if failure.get("message", "").startswith(_ASSERTIONS):
+                return f"{case.get('classname').replace('.', '/')}.py::{case.get('name')}"
+    return None
