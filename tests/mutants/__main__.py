@@ -10,7 +10,7 @@ from queue import SimpleQueue
 from goniosim.cores import available_cores
 
 from . import document
-from .catalogue import catalogue
+from .catalogue import catalogue, in_words
 from .running import Copy
 
 
@@ -66,7 +66,7 @@ def _try(copy, mutant):
     caught_by, seen = None, []
     for size in mutant.sizes or (None,):
         verdict = copy.run_with(mutant, size)
-        shown = mutant.name if size is None else f"{mutant.name} {size:g}"
+        shown = mutant.name if size is None else f"{mutant.name}: {in_words(size)}"
         print(f"{shown:40} {mutant.file:44} {verdict.caught_by or '-':70} {verdict.seconds:4.0f} s", flush=True)
         if verdict.caught_by is None:
             if not seen:

@@ -54,3 +54,9 @@ def catalogue(only=()):
             lists = {name: tuple(table.pop(name, ())) for name in ("tests", "sizes")}
             found.append(Mutant(path.stem, **table, **lists))
     return [mutant for mutant in found if not only or any(fnmatchcase(mutant.name, pattern) for pattern in only)]
+
+
+def in_words(size):
+    """A size for people: ``0.5``, ``1.02``, ``1 + 1e-08``."""
+    step = size - 1.0
+    return f"1 {'+' if step > 0.0 else '-'} {abs(step):.0e}" if 0.0 < abs(step) < 2e-4 else f"{size:g}"

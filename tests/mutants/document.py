@@ -1,6 +1,6 @@
 """docs/mutants.md: what was broken, and who noticed."""
 
-from .catalogue import ROOT
+from .catalogue import ROOT, in_words
 
 PATH = ROOT / "docs" / "mutants.md"
 
@@ -43,8 +43,8 @@ def write(outcomes):
     text.append(_SIZES)
     for mutant, _, seen, missed in outcomes:
         if mutant.sizes:
-            last = "" if missed is None else f"{missed:g}"
-            text.append(f"| {mutant.name} | {mutant.sizes[0]:g} | {seen[-1]:g} | {last} |\n")
+            sizes = mutant.name, *map(in_words, (mutant.sizes[0], seen[-1])), "" if missed is None else in_words(missed)
+            text.append(f"| {' | '.join(sizes)} |\n")
     PATH.write_text("".join(text))
 
 
