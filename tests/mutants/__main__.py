@@ -21,7 +21,8 @@ def main():
     parser.add_argument("--list", action="store_true", help="print name, file and tests, and run nothing")
     parser.add_argument("-j", "--jobs", type=int, default=min(2, available_cores()), help="tests at a time")
     given = parser.parse_args()
-    mutants = catalogue(given.only)
+    only = " ".join(given.only).split()
+    mutants = catalogue(only)
     if not mutants:
         parser.error("no mutant has such a name; --list prints them")
     if given.list:
@@ -34,7 +35,7 @@ def main():
     if survivors:
         sys.exit(f"{len(survivors)} of {len(outcomes)} mutants were not caught: {', '.join(survivors)}")
     print(f"all {len(outcomes)} mutants were caught")
-    if not given.only:
+    if not only:
         document.write(outcomes)
 
 

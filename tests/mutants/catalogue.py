@@ -37,6 +37,10 @@ class Mutant:
     tests: tuple
     sizes: tuple = ()
 
+    def is_meant_by(self, pattern):
+        """Whether its name, perhaps with its room, matches a pattern."""
+        return any(fnmatchcase(name, pattern) for name in (self.name, f"{self.room}/{self.name}"))
+
     def applied(self, source, size=None):
         """The source with the bug; a ValueError if it has no place there, or more than one."""
         places = source.count(self.old)
@@ -47,13 +51,13 @@ class Mutant:
 
 
 def catalogue(only=()):
-    """All mutants, or those whose names match a pattern, by rooms."""
+    """All mutants, by rooms; or those whose names match a pattern, as ``name`` or ``room/name``."""
     found = []
     for path in sorted(Path(__file__).parent.glob("*.toml")):
         for table in tomllib.loads(path.read_text())["mutant"]:
             lists = {name: tuple(table.pop(name, ())) for name in ("tests", "sizes")}
             found.append(Mutant(path.stem, **table, **lists))
-    return [mutant for mutant in found if not only or any(fnmatchcase(mutant.name, pattern) for pattern in only)]
+    return [mutant for mutant in found if not only or any(map(mutant.is_meant_by, only))]
 
 
 def in_words(size):

@@ -11,8 +11,8 @@ A suite of tests is worth what it catches. `make mutants` breaks goniosim on pur
 put into a copy of the source by itself, and a test of the suite has to fail at an assertion. It writes this page when
 all of them were tried.
 
-`make mutants LIST=1` prints the list, `make mutants ONLY=name` tries one, or those that match a pattern (`ONLY='g1-*'`).
-They stand in [tests/mutants](../tests/mutants), a file for each room.
+`make mutants LIST=1` prints the list; `make mutants ONLY=name` tries one, or those that match a pattern (`ONLY='g1-*'`
+or `ONLY='store/*'`). They stand in [tests/mutants](../tests/mutants), a file for each room.
 """
 
 _SIZES = """
