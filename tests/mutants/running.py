@@ -7,16 +7,21 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
-
-from goniosim._jit.folder import _COMPILED
+from pathlib import Path
 
 from .catalogue import ROOT
+from .compiled import take_over
 
 # A mutant may make the walk endless.
 LIMIT = 900.0
 # How the message of a test begins that looked at a number and found it wrong. All else is broken code.
 _ASSERTIONS = ("assert", "AssertionError", "Failed", "ExceptionGroup: Hypothesis")
-_WHOSE = "import goniosim, goniosim_cli; print(goniosim.__file__, goniosim_cli.__file__, sep='\\n')"
+_WHOSE = """
+import goniosim, goniosim_cli
+from goniosim._jit import CACHE_FOLDER
+for path in (goniosim.__file__, goniosim_cli.__file__, CACHE_FOLDER):
+    print(path)
+"""
 
 
 @dataclass(frozen=True)
@@ -42,8 +47,7 @@ class Verdict:
 class Copy:
     """A copy of the source in a folder of its own.
 
-    What is compiled is kept beside it: a folder for the source as it is, and one for each mutant of compiled code,
-    which is removed afterwards.
+    What is compiled is kept beside it: for the source as it is, and for a mutant, which has what it leaves as it is.
     """
 
     def __init__(self, folder):
@@ -60,7 +64,7 @@ class Copy:
                 shutil.copy2(ROOT / name, self._tree / name)
         (folder / "links").mkdir()
         (folder / "links" / "goniosim_cli").symlink_to(self._tree / "cli")
-        self._require_own()
+        self._compiled = self._cache_folder(folder / "compiled")
 
     def run(self, tests):
         """Run tests on the source as it is."""
@@ -70,39 +74,39 @@ class Copy:
         """Run the tests of a mutant."""
         path = self._tree / mutant.file
         source, before = path.read_text(), path.stat()
-        compiled = mutant.file.startswith(tuple(f"goniosim/{room}/" for room in _COMPILED))
-        cache = self._folder / ("mutant" if compiled else "compiled")
+        cache = self._folder / "mutant"
         path.write_text(mutant.applied(source, size))
         try:
+            take_over(self._compiled, self._cache_folder(cache), self._tree, mutant.file)
             return self._run(mutant.tests, cache)
         finally:
             path.write_text(source)
             # Compiled code goes by the time of its source.
             os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
-            if compiled:
-                shutil.rmtree(cache, ignore_errors=True)
+            shutil.rmtree(cache, ignore_errors=True)
 
     def _environment(self, cache):
         known = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "NUMBA"))}
         paths = os.pathsep.join(map(str, (self._tree, self._folder / "links")))
         return known | {"PYTHONPATH": paths, "XDG_CACHE_HOME": str(cache), "PYTHONDONTWRITEBYTECODE": "1"}
 
-    def _require_own(self):
-        """An installation of goniosim must not come first."""
+    def _cache_folder(self, cache):
+        """Where the copy keeps compiled code; raises a RuntimeError if an installation of goniosim comes first."""
+        cache.mkdir()
         done = subprocess.run(
             [sys.executable, "-c", _WHOSE],
             cwd=self._folder,
-            env=self._environment(self._folder / "compiled"),
+            env=self._environment(cache),
             capture_output=True,
             text=True,
             check=True,
         )
-        for found in done.stdout.split():
-            if not found.startswith(str(self._folder)):
-                raise RuntimeError(f"tests would see {found} instead of the copy in {self._folder}")
+        found = done.stdout.split()
+        if not all(path.startswith(str(self._folder)) for path in found):
+            raise RuntimeError(f"tests would see {' and '.join(found)} instead of what is in {self._folder}")
+        return Path(found[-1])
 
     def _run(self, tests, cache):
-        cache.mkdir(exist_ok=True)
         report = self._folder / "report.xml"
         report.unlink(missing_ok=True)
         command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", f"--junitxml={report}"]
