@@ -15,7 +15,7 @@ TESTS = Path(__file__).resolve().parents[1]
 
 # Birthdays, permutations, ranks of matrices, bit streams, ones in bytes, parking lot, distances, runs, craps, serial
 # patterns of up to 16 bits, permutations of five, lagged sums, Kolmogorov-Smirnov, bytes, cosine transform, trees,
-# monobit. Left out as dieharder's own list advises: 14 ("Do Not Use": sums) and 5, 6, 7 ("Suspect": opso, oqso, dna). For
+# monobit. Left out, as dieharder lists them: 14 ("Do Not Use": sums) and 5, 6, 7 ("Suspect": opso, oqso, dna). For
 # their time: 2, 13, 17, 201. Because 102 looks at the same: 100, 101, 200.
 CHOSEN = ("0", "1", "3", "4", "8", "9", "10", "11", "12", "15", "16", "102", "202", "203 -n 2")
 CHOSEN += ("204", "205", "206", "207", "208", "209")
