@@ -10,7 +10,19 @@ from goniosim.hard.catalogue import SCENES, Case
 from goniosim.hard.table import rows, verdict
 
 # Take longer than about two seconds.
-SLOW = {"smooth_stacks", "white_furnace_50_coats"}
+SLOW = {
+    "any_number_of_threads",
+    "black_and_white_bases",
+    "cells_with_few_hits",
+    "channels_1e6_apart",
+    "dark_rough_stack",
+    "error_bars_of_audits",
+    "infinite_beside_zero",
+    "neighbouring_seeds",
+    "odd_numbers_of_rays",
+    "one_cell_receives_all",
+    "smooth_stacks",
+}
 
 
 def case(name):
