@@ -11,11 +11,15 @@ from goniosim.hard.table import rows, verdict
 
 # Take longer than about two seconds.
 SLOW = {
+    "a_pilot_that_sees_nothing",
+    "a_target_out_of_reach",
+    "absorbing_nothing",
     "any_number_of_threads",
     "black_and_white_bases",
     "cells_with_few_hits",
     "channels_1e6_apart",
     "dark_rough_stack",
+    "dark_stack",
     "error_bars_of_audits",
     "infinite_beside_zero",
     "neighbouring_seeds",

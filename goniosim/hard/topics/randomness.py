@@ -6,7 +6,7 @@ import numpy as np
 
 from ...engine import simulate
 from ...scene import Scene
-from ..check import Check, in_sigmas, statement
+from ..check import Check, absolute, in_sigmas, statement
 from ..ways import by_estimator
 
 # Next to each other, and where integers of 32 bits, of 53 in a float64, and signed ones end.
@@ -15,18 +15,20 @@ SEEDS = (0, 1, 2, 3, 4, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**53, 2**53 + 1, 2*
 
 def neighbouring_seeds(scene: Scene) -> Iterator[Check]:
     """Seeds next to each other, and at the ends of integers, give independent slices."""
-    for name in dict(by_estimator(scene)):
+    for name in dict(by_estimator(scene, rays=1000)):
         found = [simulate(scene, estimator=name, seed=seed).components["reflection/internal"] for seed in SEEDS]
         energy = np.array([component.energy[0, 0].ravel() for component in found])
-        stderr = np.array([component.stderr[0, 0].ravel() for component in found])
-        deviations = (energy - energy.mean(axis=0)) / stderr.mean(axis=0)
-        # Slices of some estimators are their own mirror images, which hold each number twice.
-        deviations = deviations.reshape(len(SEEDS), *found[0].energy.shape[2:])[:, :, : found[0].energy.shape[3] // 2]
-        deviations = deviations.reshape(len(SEEDS), -1)
-        products = deviations @ deviations.T / deviations.shape[1]
-        pairs = products[np.triu_indices(len(SEEDS), 1)]
-        # The common mean makes the expected product -1 / N of a variance.
-        yield in_sigmas(f"{name}: correlation of two seeds", pairs, deviations.shape[1] ** -0.5, -1.0 / len(SEEDS))
+        pairs = np.triu_indices(len(SEEDS), 1)
+        alike = [(one == other)[one > 0.0].mean() for one, other in zip(*(energy[each] for each in pairs), strict=True)]
+        yield absolute(f"{name}: share of cells that agree by chance", alike, 0.0, 0.01)
+        if name == "analog":
+            # Only here the noise of cells is independent, so that a correlation has a known error.
+            stderr = np.array([component.stderr[0, 0].ravel() for component in found])
+            deviations = (energy - energy.mean(axis=0)) / stderr.mean(axis=0)
+            correlation = (deviations @ deviations.T / deviations.shape[1])[pairs]
+            # The common mean makes the expected product of two -1 / N of a variance.
+            error = deviations.shape[1] ** -0.5
+            yield in_sigmas(f"{name}: correlation of two seeds", correlation, error, -1.0 / len(SEEDS))
 
 
 def any_number_of_threads(scene: Scene) -> Iterator[Check]:
@@ -40,12 +42,8 @@ def any_number_of_threads(scene: Scene) -> Iterator[Check]:
                 for part in ("energy", "stderr", "bsdf", "bsdf_stderr")
             )
             audits = all(np.array_equal(value, other.audit.energy[entry]) for entry, value in one.audit.energy.items())
-            yield statement(
-                f"{name}: {threads} threads against one",
-                same and audits,
-                "same bits",
-                "same bits" if same and audits else "others",
-            )
+            got = "same bits" if same and audits else "others"
+            yield statement(f"{name}: {threads} threads against one", same and audits, "same bits", got)
 
 
 CASES = (neighbouring_seeds, any_number_of_threads)
