@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..scene import Scene, load_scene
 from .check import Check
-from .topics import chromatic, counting, media, randomness
+from .topics import chromatic, counting, media, models, randomness
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
@@ -64,6 +64,7 @@ TOPICS = {
     "Channels": chromatic.CASES,
     "Counting": counting.CASES,
     "Random numbers": randomness.CASES,
+    "Analytic models": models.CASES,
 }
 
 CASES = {check.__name__: Case(check.__name__, topic, check) for topic, checks in TOPICS.items() for check in checks}
