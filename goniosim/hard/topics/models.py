@@ -112,7 +112,7 @@ def elek10_makes_light(scene: Scene) -> Iterator[Check]:
     """A published formula, kept: without (N_0/N_1)^2 `elek10` sends back twice what arrives, and says so."""
     exact = adding.energies(scene)
     energy = prepare("elek10", scene, 0.0).mirror_energy[0]
-    # What enters, is reflected by the base once and leaves, counted n^2 times; the internal reflectance tells the base's.
+    # What enters, is reflected by the base once and leaves; the internal reflectance tells that of the base.
     r, inner = exact.direct[0, 0], exact.internal[0, 0]
     entered = inner * (1.0 - r) ** 2 / ((1.0 - r) ** 2 + r * inner)
     yield relative("elek10, smooth coat of 1.5 on a mirror: share of the light", energy, r + 1.5**2 * entered, 1e-11)
