@@ -51,6 +51,7 @@ test-cluster: $(STAMP)
 # Deliberate bugs, each of which the suite has to catch; half an hour. LIST=1 prints them, ONLY='store/*' tries some.
 mutants: $(STAMP)
 	$(BIN)/python -m tests.mutants $(if $(LIST),--list) '$(ONLY)'
+
 # The catalogue of hard cases, and docs/hard_cases.md; some minutes.
 hard: $(STAMP)
 	$(BIN)/goniosim hard -o docs/hard_cases.md
