@@ -233,7 +233,6 @@ def test_checksums_of_many_words_are_those_of_a_loop(monkeypatch):
     assert fletcher32(raw) == (low, high)
 
 
-
 def test_bytes_do_not_depend_on_threads(monkeypatch):
     """Slices that are worth threads, and where the system starts none."""
     values = np.random.default_rng(1).gamma(1.0, size=(2, 3, 90, 360))
