@@ -46,26 +46,28 @@ def narrow_exit(polar):
     return made
 
 
+@pytest.mark.false_alarm(2.2e-4, seeds=(1, 101, 201))
 @pytest.mark.parametrize("case", CASES)
-def test_agrees_with_the_analog_engine(case):
-    """Three channels of blocks: none beyond 5 sigma, and the totals within 4; false-alarm rate 2e-4 a case."""
+def test_agrees_with_the_analog_engine(case, seed):
+    """Three channels of blocks: none beyond 5 sigma, and the totals within 4; false-alarm rate 2.2e-4 a case."""
     scene, made = operator_of(case)
     assert made.variant.leaves == case.split()[0] if "between" not in case else made.variant.interface == 2
-    component = simulate(scene, rays=400_000, seed=3, estimator="analog").components[COMPONENT[CASES[case][1]]]
-    z, totals = deviations(made, [component], energies(made, 1024, 32, seed=1), 400_000)
+    component = simulate(scene, rays=400_000, seed=seed + 2, estimator="analog").components[COMPONENT[CASES[case][1]]]
+    z, totals = deviations(made, [component], energies(made, 1024, 32, seed), 400_000)
     assert z.size > 15
     assert np.abs(z).max() < 5.0
     assert np.abs(totals).max() < 4.0
 
 
-def test_orders_add_up_and_agree():
-    """To the last digits but a few; each order agrees with the analog engine's as above."""
+@pytest.mark.false_alarm(7e-4, seeds=(2, 102, 202))
+def test_orders_add_up_and_agree(seed):
+    """To the last digits but a few; each of three orders agrees with the analog engine's as above."""
     scene, made = operator_of("in from the top", orders=2)
     _, whole = operator_of("in from the top")
-    parts = energies(made, 1024, 32, seed=2)
+    parts = energies(made, 1024, 32, seed)
     assert parts.shape[1] == 3
-    assert parts.sum(axis=1) == pytest.approx(energies(whole, 1024, 32, seed=2)[:, 0], rel=1e-9, abs=1e-14)
-    component = simulate(scene, rays=400_000, seed=4, estimator="analog").components["transmission"]
+    assert parts.sum(axis=1) == pytest.approx(energies(whole, 1024, 32, seed)[:, 0], rel=1e-9, abs=1e-14)
+    component = simulate(scene, rays=400_000, seed=seed + 2, estimator="analog").components["transmission"]
     for slot, order in enumerate(component.orders.values()):
         z, totals = deviations(made, [order], parts[:, slot : slot + 1], 400_000)
         assert np.abs(z).max() < 5.0 and np.abs(totals).max() < 4.0
@@ -148,11 +150,12 @@ def test_memory_is_told_from_shapes():
         assert sum(array.nbytes for array in arrays) < own < 3.0 * sum(array.nbytes for array in arrays)
 
 
-def test_lambertian_base_under_a_wide_top():
-    """Total against the analog engine within 4.5 sigma, false alarm 7e-6."""
+@pytest.mark.false_alarm(1e-5, seeds=(3, 103))
+def test_lambertian_base_under_a_wide_top(seed):
+    """Total against the analog engine, whose scatter dominates, within 4.5 sigma: false alarm 1e-5."""
     scene = make_scene([dielectric(1.5, 0.3), lambert(0.6)], 70.0, rows=9, columns=36)
     made = Operator(make_plan(scene), (UP,), 90 * FINE)
     made.prepare()
-    component = simulate(scene, rays=400_000, seed=5, estimator="analog").components["reflection/internal"]
-    _, totals = deviations(made, [component], energies(made, 1024, 32, seed=3), 400_000)
+    component = simulate(scene, rays=400_000, seed=seed + 2, estimator="analog").components["reflection/internal"]
+    _, totals = deviations(made, [component], energies(made, 1024, 32, seed), 400_000)
     assert np.abs(totals).max() < 4.5

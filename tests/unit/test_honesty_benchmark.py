@@ -15,12 +15,12 @@ SEEDS = 12
 SHAPE = (1, 30, 60)
 
 
-def row_of(folder, stated=1.0, estimator="operator", dim=1.0, noise=0.1):
+def row_of(folder, stated=1.0, estimator="operator", dim=1.0, noise=0.1, seed=3):
     """A row of slices with an error of ``noise`` in every cell, of which ``stated`` times as much is told.
 
     The sums of the batches are those of independent cells; those of the last rows hold ``dim`` as much as the others.
     """
-    rng = np.random.default_rng(3)
+    rng = np.random.default_rng(seed)
     result = make_result((0.0,), ("grey",), *SHAPE[1:], components=(NAME,), estimator=estimator, rays=10**6)
     component, cells = result.components[NAME], result.cells
     truth = cells.projected_solid_angle[0] / math.pi
@@ -38,9 +38,10 @@ def row_of(folder, stated=1.0, estimator="operator", dim=1.0, noise=0.1):
     return one.row("made-up", NAME, 0.0, 10**6, cells, 0)
 
 
-def test_honest_bars_are_found_honest(tmp_path):
+@pytest.mark.false_alarm(1e-2, seeds=(3, 103, 203, 303, 403))
+def test_honest_bars_are_found_honest(tmp_path, seed):
     """1800 cells and 450 blocks by 12 seeds: a right table is off with a probability of about 1 %."""
-    row = row_of(tmp_path)
+    row = row_of(tmp_path, seed=seed)
     assert row.faults == [] and row.estimator == "operator"
     assert row.ratio[0] == pytest.approx(1.0, abs=0.05) and 0.0 < row.ratio[1] < 0.05
     for name in ("bright", "1e-3", "1e-4"):

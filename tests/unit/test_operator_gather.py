@@ -17,7 +17,7 @@ NODES, ROWS, THETA, KEYS = 30, 5, 70.0, 200
 NOTHING = np.empty(0)
 
 
-def gathered(radiance, parametrization, columns, exits=NOTHING, taus=(0.0,), source=NOTHING):
+def gathered(radiance, parametrization, columns, exits=NOTHING, taus=(0.0,), source=NOTHING, seed=1):
     """Energies of KEYS replicates, shape (KEYS, n, rows, width), of a radiance of shape (..., n)."""
     width = columns if columns % 2 else columns // 2
     count = np.shape(radiance)[-1]
@@ -27,19 +27,20 @@ def gathered(radiance, parametrization, columns, exits=NOTHING, taus=(0.0,), sou
     out = np.full((KEYS, count, ROWS * width), np.nan)
     code = PARAMETRIZATIONS[parametrization][0]
     for k in range(KEYS):
-        gather(values, code, ROWS, columns, light, exits, source, np.array(taus), child_key(1, k), out[k])
+        gather(values, code, ROWS, columns, light, exits, source, np.array(taus), child_key(seed, k), out[k])
     return out.reshape(KEYS, count, ROWS, width)
 
 
+@pytest.mark.false_alarm(1.1e-4, seeds=(1, 101, 201))
 @pytest.mark.parametrize("parametrization", PARAMETRIZATIONS)
 @pytest.mark.parametrize("columns", [2 * BLOCK + 90, 16, 15])
-def test_cells_and_rows_have_their_projected_solid_angle(parametrization, columns):
+def test_cells_and_rows_have_their_projected_solid_angle(parametrization, columns, seed):
     """As seen by a radiance of one, with blocks that are not full, a horizon that cuts cells, and slices not folded.
 
-    Within 5.5 sigma each, of 900 cells at most, and rows with all their cells: false-alarm rate 1e-4, as the scatter
-    is estimated.
+    Within 5.5 sigma each, of 900 cells at most, and rows with all their cells: false-alarm rate 1.1e-4, as the scatter
+    is estimated (t, 199 degrees of freedom).
     """
-    found = gathered(np.ones(1), parametrization, columns)[:, 0]
+    found = gathered(np.ones(1), parametrization, columns, seed=seed)[:, 0]
     width = found.shape[2]
     geometry = slice_geometry(parametrization, ROWS, columns, THETA)
     valid, exact = geometry.valid[:, :width], geometry.projected_solid_angle[:, :width]
@@ -81,8 +82,9 @@ def test_what_is_linear_in_a_cell_has_next_to_no_noise(exits):
     assert (found.std(axis=0) / found.mean(axis=0)).max() < 0.04
 
 
+@pytest.mark.false_alarm(1e-5, seeds=(1, 101))
 @pytest.mark.parametrize(("alpha", "exit_alpha"), [(0.4, 0.3), (0.3, 0.02), (0.3, 0.0)])
-def test_light_through_both_interfaces_is_that_of_independent_paths(alpha, exit_alpha):
+def test_light_through_both_interfaces_is_that_of_independent_paths(alpha, exit_alpha, seed):
     """Of a radiance that is the light alone, through a wide exit, a narrow one and a smooth one: rows of cells.
 
     Against what independent paths transmit without any reflection, within 5 sigma: false-alarm rate 1e-5, as the
@@ -90,9 +92,10 @@ def test_light_through_both_interfaces_is_that_of_independent_paths(alpha, exit_
     """
     layers = [dielectric(1.5, alpha), medium(0.3), dielectric(1.0, exit_alpha)]
     scene = make_scene(layers, THETA, rows=ROWS, columns=40, orders=1)
-    straight = simulate(scene, rays=2_000_000, seed=1, estimator="analog").components["transmission"].orders["order_1"]
+    analog = simulate(scene, rays=2_000_000, seed=seed, estimator="analog")
+    straight = analog.components["transmission"].orders["order_1"]
     exact, error2 = straight.energy[0, 0].sum(axis=1), (straight.stderr[0, 0] ** 2).sum(axis=1)
-    found = gathered(np.zeros(2), "classic", 40, np.array([exit_alpha, 1.5]), [0.3], np.array([alpha, 1.5]))
+    found = gathered(np.zeros(2), "classic", 40, np.array([exit_alpha, 1.5]), [0.3], np.array([alpha, 1.5]), seed)
     assert (found[:, 1] == 0.0).all()
     rows = 2.0 * found[:, 0].sum(axis=2)
     error2 += rows.var(axis=0, ddof=1) / KEYS
