@@ -32,7 +32,7 @@ def seeds_of(item):
 def rate_of(item):
     """Probability that a test fails by chance, with all of its seeds; 0 where it states none."""
     mark = item.get_closest_marker("false_alarm")
-    return 0.0 if mark is None else mark.args[0] ** max(1, len(seeds_of(item)))
+    return mark.args[0] ** max(1, len(seeds_of(item))) if mark and mark.args else 0.0
 
 
 def fault_of(item):
@@ -82,6 +82,7 @@ def pytest_pyfunc_call(pyfuncitem):
     return None
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_terminal_summary(terminalreporter):
     """Name what was tried again: more than one in a thousand runs is no chance."""
     for outcome in ("passed", "failed"):

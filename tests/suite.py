@@ -4,9 +4,10 @@ Both are judged when a run ends. Where tests run in workers, each of these colle
 started them nothing: it judges what one of them has told.
 """
 
+import pytest
+
 import alarms
 import floor
-import pytest
 
 # Chance that a right program fails any test: a run of `make test`, and what `make test-all` adds.
 BARS = {"fast": 1e-6, "slow": 1e-4}
@@ -59,6 +60,9 @@ def pytest_collection_modifyitems(config, items):
 
 def pytest_collection_finish(session):
     """Add up the rates of what is left, and tell who started this worker."""
+    # What does not import is told of as it is, and leaves nothing to count.
+    if session.testsfailed:
+        return
     rates = dict.fromkeys((*BARS, "cluster"), 0.0)
     for item in session.items:
         rates[kind_of(item)] += alarms.rate_of(item)

@@ -186,8 +186,8 @@ def test_an_error_at_the_level_of_rounding_is_none():
 def test_the_exact_plastic_is_rarely_told_from_few_rays(theta_deg, rays, seed):
     """Simulations with some to 500 hits in 1800 cells, against the closed form: 1 in 20 at most says that it is wrong.
 
-    100 seeds, 4 sigma above 5 %: false-alarm rate 5e-4 (binomial). Without the limits on what goes unseen it was 23 % with
-    100 rays at 60 degrees. A base of twice the reflectance is told from it with 1000 rays in all of the runs.
+    100 seeds, 4 sigma above 5 %: false-alarm rate 5e-4 (binomial). Without the limits on what goes unseen it was 23 %
+    with 100 rays at 60 degrees. A base of twice the reflectance is told from it with 1000 rays in all of the runs.
     """
     scene = make_scene([dielectric(1.5), medium(0.2), lambert(0.5)], theta_deg, rows=30, columns=60)
     exact = integrate_cells(plastic_density(1.5, 0.5, 0.2), theta_deg, 30, 60)

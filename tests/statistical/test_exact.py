@@ -1,7 +1,7 @@
 """Every estimator against closed forms, cell by cell: never worse than independent paths would be.
 
 The chi-squares are in units of what independent paths scatter, which the estimators must undercut: an estimator that is
-biased by as much as the noise of 200,000 paths fails. A right one fails hardly ever: one that scattered as much as paths
+biased by as much as the noise of 200,000 paths fails. A right one hardly ever does: one that scattered as much as paths
 do would exceed the limit with a probability of 1.2e-5 in each of two slices of 108 blocks, and of less in cells.
 """
 

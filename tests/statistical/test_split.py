@@ -129,8 +129,8 @@ def test_the_scatter_of_seeds_is_what_is_stated(name, size, seed):
     All cells share the paths, so the ratio of variances has an error of sqrt(2 / 159) = .11: within three of
     them. Shares within 1.5 points in cells above 3 % of the peak and in blocks down to 1e-4 of the energy, 3 points
     down to 1e-5. A block that says of itself that it is uncertain claims nothing; with replicates no smaller than
-    those of a run they are less than 1 % of those above 1e-4, and 10 % of those above 1e-5. A false alarm in 3e-3 of the
-    cases from the ratio, and in as much from each of the shares at the most.
+    those of a run they are less than 1 % of those above 1e-4, and 10 % of those above 1e-5. A false alarm in 3e-3 of
+    the cases from the ratio, and in as much from each of the shares at the most.
     """
     layers, theta, parametrization, side = HONEST[name]
     plan, split = prepared(Split, make_scene(layers, theta, parametrization), (side,))

@@ -181,7 +181,7 @@ def test_the_true_model_is_rarely_told_from_few_hits(hits, weight, seed):
 @pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize(("hits", "factor"), [(100, 2.0), (100, 0.0), (3000, 1.2), (3000, 0.8)])
 def test_a_wrong_model_is_caught_with_few_hits_and_with_many(hits, factor):
-    """In at least 95 of 100 runs; all four were caught in each of 4000: if one of 1000 was missed, a false alarm in 1e-9."""
+    """In at least 95 of 100 runs; all four were caught in each of 4000: with a miss in 1000, a false alarm in 1e-9."""
     truth = hits / RAYS * lobe()
     found = compared(factor * truth, *count_paths(truth, 100, seed=3))
     assert np.mean([rmse(found, m).significant for m in range(100)]) >= 0.95

@@ -55,8 +55,9 @@ def test_a_bright_cell_leaves_nothing_behind_in_those_beyond_its_neighbours():
     np.testing.assert_allclose(mended(mean, variance, AROUND)[4:, 4:], 1e-40, rtol=1e-14)
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_total_variance_of_uniform_darkness_stays():
-    """Few hits, at random: what is handed round is neither made nor lost."""
+    """Few hits, at random: what is handed round is neither made nor lost, to 0.05 % over many seeds."""
     rng = np.random.default_rng(2)
     replicates = rng.poisson(0.02, (32, 90, 180)).astype(float)
     variance = replicates.var(axis=0, ddof=1) / 32

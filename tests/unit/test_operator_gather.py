@@ -56,8 +56,12 @@ def test_cells_and_rows_have_their_projected_solid_angle(parametrization, column
     assert (found.mean(axis=0)[seen] > 0.0).all()
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_numbers_do_not_mix_and_absorption_is_that_of_their_channel():
-    """Six numbers in two channels, through a smooth exit, which has the closed form: rows of 50 cells to 1 %."""
+    """Six numbers in two channels, through a smooth exit, which has the closed form: rows of 50 cells to 1 %.
+
+    Over many seeds they scatter by less than 0.07 %.
+    """
     taus, eta, radiance = [0.0, 0.7], 1.5, np.array([1.0, 2.0, 0.0, 4.0, 5.0, 6.0])
     found = gathered(radiance, "classic", 100, np.array([0.0, eta]), taus).mean(axis=0).sum(axis=2)
     theta = (np.arange(ROWS * 400) + 0.5) * (0.5 * math.pi / (ROWS * 400))
@@ -102,8 +106,12 @@ def test_light_through_both_interfaces_is_that_of_independent_paths(alpha, exit_
     assert (np.abs(rows.mean(axis=0) - exact) <= 5.0 * np.sqrt(error2)).all()
 
 
+@pytest.mark.false_alarm(1e-9)
 def test_light_far_from_a_narrow_exit_is_not_left_to_rare_facets():
-    """Five cells in a row 50 degrees and more from where the light leaves for, through an exit of width .001."""
+    """Five cells in a row 50 degrees and more from where the light leaves for, through an exit of width .001.
+
+    Over many seeds the scatter is 0.20 +- 0.01 of the mean, and the largest 1.7 +- 0.2 of it.
+    """
     exits, source = np.array([0.001, 1.5]), np.array([0.05, 1.5])
     far = gathered(np.zeros(1), "classic", 40, exits, [0.0], source)[:, 0, 0, -5:].sum(axis=1)
     assert far.mean() > 0.0 and far.std(ddof=1) < 0.5 * far.mean() and far.max() < 4.0 * far.mean()

@@ -228,7 +228,7 @@ def _bin(layers, size, keys, crowd=rays.CROWD * BATCH, budget=1 << 20):
 
 @pytest.mark.false_alarm(2.4e-5, seeds=(0, 100))
 def test_a_crowd_of_waiting_rays_costs_noise_only(seed):
-    """Where a coin chooses every branch: the same mean within 4.5 sigma of both, t with 78 degrees: false alarm 2.4e-5."""
+    """Where a coin chooses every branch: the same mean within 4.5 sigma of both (t of 78), false alarm 2.4e-5."""
     totals = np.empty((2, 40))
     for i, crowd in enumerate((-1, rays.CROWD * BATCH)):
         keys = [child_key(seed + i, r) for r in range(40)]

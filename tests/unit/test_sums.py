@@ -141,6 +141,7 @@ def paths(rng, n=500, cells=24):
     return np.where(cell == np.arange(cells)[:, None], weight, 0.0).reshape(1, 4, 6, n)
 
 
+@pytest.mark.false_alarm(0)
 def test_sums_over_independent_paths_have_the_error_of_their_mean_to_rounding():
     rng = np.random.default_rng(3)
     made = paths(rng)
