@@ -91,20 +91,25 @@ def test_threads_do_not_change_the_bits():
         assert np.array_equal(a, b) and events == again > 600 * 8
 
 
-def test_fewer_replicates_than_a_chunk_and_odd_columns():
-    """Odd columns are not folded; a slice is its own mirror image."""
+@pytest.mark.false_alarm(5e-4, seeds=(1, 101, 201))
+def test_fewer_replicates_than_a_chunk_and_odd_columns(seed):
+    """Odd columns are not folded; a slice is its own mirror image. Over many seeds its halves differ by 0.25 %."""
     _, made = operator_of("out", columns=15)
     workspace = made.workspace()
     out = np.empty((3, 1, 3, 9, 15))
-    workspace.run(0, 4000, [child_key(1, i) for i in range(3)], out, None)
+    workspace.run(0, 4000, [child_key(seed, i) for i in range(3)], out, None)
     _, folded = operator_of("out", columns=30)
-    pairs = energies(folded, 4000, 3, seed=1)[:, 0]
+    pairs = energies(folded, 4000, 3, seed)[:, 0]
     assert out[..., 8:].sum() == pytest.approx(out[..., :7].sum(), rel=0.01)
     assert out.sum() == pytest.approx(2.0 * pairs.sum(), rel=0.01)
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_cells_by_points_and_by_nodes_agree():
-    """A grid that the nodes do not fit takes some points of each cell: the same light to 1 %, from the same paths."""
+    """A grid that the nodes do not fit takes some points of each cell: the same light to 1 %, from the same paths.
+
+    Over many seeds they differ by 0.03 %.
+    """
     _, fits = operator_of("out", rows=9, columns=36)
     _, points = operator_of("out", rows=10, columns=35)
     assert fits.application.sums_cells and not points.application.sums_cells

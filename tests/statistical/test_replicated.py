@@ -155,7 +155,9 @@ def test_a_stop_keeps_whole_replicates():
     assert len(run.spending.checkpoints[0]) == 1 and run.estimate(DOWN, 0).energy.sum() > 0.3
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_a_few_paths_without_slices_tell_the_noise_of_independent_paths(pair):
+    """To 10 %: over many seeds they are 5 % high at the most, and scatter by 0.5 %."""
     plan, analog, run = pair
     short = shot(AnalogRun(plan.in_one_cell(), 3), rays=50_000)
     for side in (UP, DOWN):
