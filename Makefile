@@ -13,7 +13,7 @@ PAPER := out/paper
 # Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.
 WORKERS := -n auto --maxprocesses 4 --dist loadfile
 
-.PHONY: demo install lint test test-all test-cluster floor bench headline accuracy cluster-overhead honesty paper paper-report clean
+.PHONY: demo install lint test test-all test-cluster floor hard bench headline accuracy cluster-overhead honesty paper paper-report clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -50,6 +50,10 @@ floor: $(STAMP)
 test-cluster: $(STAMP)
 	tests/cluster/install
 	$(BIN)/python -m pytest tests/cluster -m cluster
+
+# The catalogue of hard cases, and docs/hard_cases.md; some minutes.
+hard: $(STAMP)
+	$(BIN)/goniosim hard -o docs/hard_cases.md
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py
