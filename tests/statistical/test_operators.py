@@ -127,19 +127,27 @@ def test_a_stop_gives_up():
     assert made.workspace().run(0, 1 << 20, [child_key(1, 1)], np.empty((1, 1, 3, 9, 18)), stop) is None
 
 
-def test_coarse_nodes_tell_the_bias():
-    """The difference is small and shrinks with the distance; the fine estimate is that of `run`."""
+@pytest.mark.false_alarm(1e-4, seeds=(1, 101, 201))
+def test_coarse_nodes_tell_the_bias(seed):
+    """The difference is small and shrinks with the distance; the fine estimate is that of `run`.
+
+    Over many seeds it shrinks by a factor of 1.72 +- 0.06; with less than 8000 paths noise would add to that.
+    """
     norms = []
     for fine in (1, 2):
         _, made = operator_of("out", fine=fine)
-        coarse, found = made.coarse_minus_fine(0, 500, [child_key(1, i) for i in range(8)])
-        assert np.array_equal(found, energies(made, 500, 8, seed=1))
+        coarse, found = made.coarse_minus_fine(0, 8000, [child_key(seed, i) for i in range(8)])
+        assert np.array_equal(found, energies(made, 8000, 8, seed))
         norms.append(np.linalg.norm((coarse - found).mean(axis=0)) / np.linalg.norm(found.mean(axis=0)))
-    assert 0.0 < 1.8 * norms[1] < norms[0] < 1e-3
+    assert 0.0 < 1.5 * norms[1] < norms[0] < 1e-3
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_more_polar_angles_of_arrivals_take_the_bias_away():
-    """Nodes 2.5 degrees apart under a lobe 5 degrees wide; half the distance, a fourth of the change at the most."""
+    """Nodes 2.5 degrees apart under a lobe 5 degrees wide; half the distance, a fourth of the change at the most.
+
+    Over many seeds it is a 15th, within a 20th of that.
+    """
     slices = [energies(narrow_exit(polar), 2000, 8, seed=1).mean(axis=0) for polar in (36, 72, 144)]
     first, second = (np.linalg.norm(b - a) for a, b in itertools.pairwise(slices))
     assert 0.0 < 4.0 * second < first < 0.02 * np.linalg.norm(slices[-1])

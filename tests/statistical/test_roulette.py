@@ -64,11 +64,12 @@ def test_a_dark_plastic_agrees_with_its_closed_form(seed):
     assert abs(total.mean() - exact) < 4.5 * total.std(ddof=1) / SEEDS**0.5
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_light_from_a_dark_base_is_not_sacrificed_to_a_bright_interface_above_it():
     """A clear coat over a darkly coated base: one ray in 250 is a million times as bright as the others.
 
     Away from the mirror direction only the base is seen. With a tenth of the rays there its energy would be known to
-    sqrt(10 / 40000) = 1.6 % if all were equal; twice that at most.
+    sqrt(10 / 40000) = 1.6 % if all were equal; twice that at most. Over many seeds it is 0.99 %.
     """
     layers = [dielectric(1.5), dielectric(1.7), medium(6.0), lambert(0.5)]
     energy, stderr, _ = many(layers, "reflection/internal", rows=6, columns=6)

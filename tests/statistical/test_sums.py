@@ -78,8 +78,12 @@ def test_the_rmse_and_the_albedo_of_a_comparison(factor, seed):
     assert np.mean([each.albedo_stderr[0, 0] ** 2 for each in found]) ** 0.5 == pytest.approx(albedo, rel=TOLERANCE)
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_an_absorbed_channel_is_uncertain_where_others_are_not():
-    """Strong absorption leaves next to nothing of all but the steepest paths: few of many hits carry the channel."""
+    """Strong absorption leaves next to nothing of all but the steepest paths: few of many hits carry the channel.
+
+    Over many seeds that is so in 90 +- 2 % of the cells.
+    """
     from reference.scenes import medium
 
     layers = [dielectric(1.5, 0.3), medium([0.0, 1.0, 60.0]), lambert(0.8)]

@@ -20,7 +20,7 @@ JUDGED = re.compile(
     r"many_seeds|_deviations\(|\bdeviations\(|analog_blocks|[0-9]\.?[0-9]* \* [^\n]*(stderr|std\()",
     re.IGNORECASE,
 )
-DRAWN = re.compile(r"default_rng|simulate\(|trace\(|replicates\(|\bseeds?\b|uniform\(|\brays=")
+DRAWN = re.compile(r"default_rng|simulate\(|trace\(|replicates\(|\bseeds?\b|uniform\(|\brays=|sampled")
 ANEW = re.compile(r"default_rng\(\)|\bRandom\(\)|(?<![\w.])random\.(random|uniform|choice|randrange)\(")
 
 
