@@ -38,7 +38,9 @@ $(LINTERS): $(STAMP)
 test: $(STAMP)
 	$(BIN)/python -m pytest $(WORKERS) -m "not slow and not cluster"
 
+# Without dieharder, which is installed if need be and possible, the tests that need it fail and say so.
 test-all: $(STAMP)
+	-tests/hard/install-dieharder
 	$(BIN)/python -m pytest $(WORKERS) -m "not cluster"
 
 # Numbers of tests, below which the suite fails: to be written when tests were added or taken away.

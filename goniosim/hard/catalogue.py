@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..scene import Scene, load_scene
 from .check import Check
-from .topics import media
+from .topics import chromatic, counting, media, models, randomness
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
@@ -61,6 +61,10 @@ class Case:
 # For each topic, the functions that check its cases. A new case is a scene file and a function in one of these.
 TOPICS = {
     "Media and stacks": media.CASES,
+    "Channels": chromatic.CASES,
+    "Counting": counting.CASES,
+    "Random numbers": randomness.CASES,
+    "Analytic models": models.CASES,
 }
 
 CASES = {check.__name__: Case(check.__name__, topic, check) for topic, checks in TOPICS.items() for check in checks}

@@ -12,7 +12,23 @@ from goniosim.hard.table import rows, verdict
 from goniosim.scene import with_arguments
 
 # Take longer than about two seconds.
-SLOW = {"smooth_stacks", "white_furnace_50_coats"}
+SLOW = {
+    "a_pilot_that_sees_nothing",
+    "a_target_out_of_reach",
+    "absorbing_nothing",
+    "any_number_of_threads",
+    "black_and_white_bases",
+    "cells_with_few_hits",
+    "channels_1e6_apart",
+    "dark_rough_stack",
+    "dark_stack",
+    "error_bars_of_audits",
+    "infinite_beside_zero",
+    "neighbouring_seeds",
+    "odd_numbers_of_rays",
+    "one_cell_receives_all",
+    "smooth_stacks",
+}
 
 
 def case(name):
