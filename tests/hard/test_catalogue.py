@@ -31,8 +31,15 @@ SLOW = {
 }
 
 
+# Error bars of 60 seeds, whose squares may be off by a half: each of a dozen is with a probability of 7e-3.
+LOOSE = {"channels_1e6_apart"}
+
+
 def case(name):
-    return pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else [])
+    rate, tries = (0.1, 8) if name in LOOSE else (3e-4, 3)
+    seeds = tuple(range(0, 1000 * tries, 1000))
+    slow = [pytest.mark.slow] if name in SLOW else []
+    return pytest.param(name, marks=[pytest.mark.false_alarm(rate, seeds=seeds), *slow])
 
 
 def reseeded(case, seed):
@@ -42,13 +49,13 @@ def reseeded(case, seed):
     return other
 
 
-@pytest.mark.false_alarm(1e-5, seeds=(0, 100))
 @pytest.mark.parametrize("name", [case(name) for name in CASES])
 def test_holds(name, seed):
     """The difficulties are told at the head of the scenes in configs/hard, and by a failure here.
 
     Checks of what is sampled allow 6 standard errors: false alarm 2e-9 for each number, 1e-7 where the error is that of
-    64 parts, and 1e-5 for a hundred of these.
+    64 parts, 1.2e-6 where it is that of 32 replicates: 3e-4 for hundreds of these. Only `neighbouring_seeds` has seeds
+    of its own: 2e-7 for 91 pairs.
     """
     (outcome,) = run([reseeded(CASES[name], seed)])
     failed = [f"{each.checked}: expected {each.expected}, got {each.got}" for each in outcome.checks if not each.holds]
