@@ -4,7 +4,7 @@ Classic cells are linear in theta_v and phi_v. Half cells are linear in u, with 
 viewer stands at v = 2 (l.h) h - l, so that d omega_v = 4 (l.h) d omega_h, and what counts is the part with v_z > 0.
 """
 
-from mpmath import acos, cos, mp, mpf, pi, quad, sin
+from mpmath import acos, cos, mp, mpc, mpf, pi, quad, sin
 
 
 def classic(rows, columns, row):
@@ -14,23 +14,22 @@ def classic(rows, columns, row):
     return width * (cos(low) - cos(high)), width * (sin(high) ** 2 - sin(low) ** 2) / 2
 
 
-def half_tilt(rows, edge):
-    """theta_h at the lower edge of a row."""
-    return pi / 2 * mpf(edge) ** 2 / mpf(rows) ** 2
+def half_edges(rows, columns, row, column):
+    """The least and largest theta_h and phi_h of a half cell."""
+    tilts = (pi / 2 * (mpf(edge) / rows) ** 2 for edge in (row, row + 1))
+    return *tilts, *(2 * pi * edge / columns for edge in (column, column + 1))
 
 
-def half(theta, rows, columns, row, column):
-    """Solid and projected solid angle of a half cell, of the part above the horizon."""
-    low, high = half_tilt(rows, row), half_tilt(rows, row + 1)
-    start, end = 2 * pi * column / columns, 2 * pi * (column + 1) / columns
+def half(theta, low, high, start, end):
+    """Solid and projected solid angle of a half cell, of the part above the horizon, for light at ``theta``."""
     sine, cosine = sin(theta), cos(theta)
-
-    def ring(t):
-        return _ring(t, start, end, sine, cosine)
-
     bounds = sorted({low, high, *(k for k in _kinks(start, end, sine, cosine) if low < k < high)})
-    pieces = list(zip(bounds[:-1], bounds[1:], strict=True))
-    return tuple(sum(quad(lambda t, w=which: ring(t)[w] * sin(t), list(piece)) for piece in pieces) for which in (0, 1))
+    # One quadrature for both, as a complex number.
+    whole = sum(
+        quad(lambda t: mpc(*_ring(t, start, end, sine, cosine)) * sin(t), list(piece))
+        for piece in zip(bounds[:-1], bounds[1:], strict=True)
+    )
+    return whole.real, whole.imag
 
 
 def _kinks(start, end, sine, cosine):
