@@ -137,8 +137,8 @@ def projected_row(u, light):
 def geometry(rows, columns, theta):
     """Validity and exact solid angles of all cells for light at polar angle ``theta``.
 
-    Closed form in phi_h, Gauss-Legendre in theta_h on intervals without kinks: exact to
-    rounding for cells above the horizon, to about 1e-12 sr for those that it cuts.
+    Closed form in phi_h, Gauss-Legendre in theta_h on intervals without kinks: exact to rounding, which where the
+    horizon spares next to nothing of a cell is that of the cell's edges (docs/precision.md).
 
     Returns
     -------

@@ -44,5 +44,5 @@ def facet_cosine(c, square):
 
 
 def scaled_g(c, square, eta):
-    """eta cos_t, times the length of the normal."""
+    """Eta cos_t, times the length of the normal."""
     return eta * cos_t(facet_cosine(c, square), eta) * sqrt(square)

@@ -1,4 +1,4 @@
-"""The GGX distribution, Smith's masking, and visible normals (Walter et al. 2007; Heitz 2014; Dupuy and Benyoub 2023)."""
+"""The GGX distribution, Smith's masking and visible normals (Walter et al. 2007; Dupuy and Benyoub 2023)."""
 
 from mpmath import mpf, pi, sqrt
 
@@ -28,8 +28,8 @@ def correlated(g_l, g_v):
 def visible_normal(x, y, z, alpha, cosine, sine, u):
     """The unit normal that belongs to an azimuth and to a uniform number.
 
-    Stretched by 1 / alpha the facets are a hemisphere, and the mirror image of the view on a visible one is uniform over
-    the cap of the sphere above the height of minus the view.
+    Stretched by 1 / alpha the facets are a hemisphere, and the mirror image of the view on a visible one is uniform
+    over the cap of the sphere above the height of minus the view.
     """
     length = sqrt((alpha * x) ** 2 + (alpha * y) ** 2 + z**2)
     w = (alpha * x / length, alpha * y / length, z / length)

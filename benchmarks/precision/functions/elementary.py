@@ -61,7 +61,9 @@ def _octant_points(dense):
 
 
 def _angles(dense):
-    x = np.append(_around([0.0, 0.25 * np.pi, 0.5 * np.pi], dense), np.linspace(0.0, 0.5 * np.pi, 4001 if dense else 101))
+    x = np.append(
+        _around([0.0, 0.25 * np.pi, 0.5 * np.pi], dense), np.linspace(0.0, 0.5 * np.pi, 4001 if dense else 101)
+    )
     return np.unique(x[(x >= 0.0) & (x <= 0.5 * np.pi)])[None]
 
 

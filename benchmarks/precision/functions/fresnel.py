@@ -76,7 +76,9 @@ def _open_points(dense):
 
 def _conductor_points(dense):
     """All combinations, and little absorption next to critical angles."""
-    wide = grids.product(grids.cosines(dense)[::3 if dense else 1], grids.indices(dense)[::3], grids.absorptions(dense)[::2])
+    wide = grids.product(
+        grids.cosines(dense)[:: 3 if dense else 1], grids.indices(dense)[::3], grids.absorptions(dense)[::2]
+    )
     pairs = grids.critical(dense)[:, :: 3 if dense else 1]
     kappa = np.array([0.0, 1e-12, 1e-9, 1e-5])[:: 1 if dense else 2]
     near = np.concatenate([np.stack([*pairs, np.full(pairs.shape[1], k)]) for k in kappa], axis=1)
@@ -94,7 +96,15 @@ _METAL = "cos 1e-16 to 1, eta .05 to 10 and 1 ± 10^-k, kappa 0 and 1e-12 to 1e6
 _CRITICAL = "next to the critical angle"
 
 CASES = [
-    Case("fresnel_dielectric, R", (_C, _ETA), grids.fresnel, _GRID, _dielectric, exact.dielectric_reflectance, floor=_NONE),
+    Case(
+        "fresnel_dielectric, R",
+        (_C, _ETA),
+        grids.fresnel,
+        _GRID,
+        _dielectric,
+        exact.dielectric_reflectance,
+        floor=_NONE,
+    ),
     Case("fresnel_dielectric, cos_t", (_C, _ETA), grids.fresnel, _GRID, _dielectric, exact.cos_t, 1),
     Case("dielectric_transmittance", (_C, _ETA), grids.fresnel, _GRID, _dielectric, exact.dielectric_transmittance, 2),
     Case(
@@ -107,7 +117,9 @@ CASES = [
         0,
         _CRITICAL,
     ),
-    Case("scaled_transmittance, g", (_C, _SQUARE, _ETA), _scaled_points, _SCALED, _scaled, exact.scaled_g, 1, _CRITICAL),
+    Case(
+        "scaled_transmittance, g", (_C, _SQUARE, _ETA), _scaled_points, _SCALED, _scaled, exact.scaled_g, 1, _CRITICAL
+    ),
     Case(
         "reflects, where the coin turns",
         (_C, _SQUARE, _ETA),
@@ -119,7 +131,15 @@ CASES = [
         _CRITICAL,
     ),
     Case("reflects, g", (_C, _SQUARE, _ETA), _open_points, _SCALED, _coin, exact.scaled_g, 1, _CRITICAL),
-    Case("fresnel_conductor", (_C, _ETA, _KAPPA), _conductor_points, _METAL, _conductor, exact.conductor_reflectance, floor=_NONE),
+    Case(
+        "fresnel_conductor",
+        (_C, _ETA, _KAPPA),
+        _conductor_points,
+        _METAL,
+        _conductor,
+        exact.conductor_reflectance,
+        floor=_NONE,
+    ),
     Case(
         "conductor_absorptance",
         (_C, _ETA, _KAPPA),

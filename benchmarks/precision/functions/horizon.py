@@ -58,7 +58,7 @@ def _jacobian(u):
 
 
 def _horizon_azimuth(u, lx, lz):
-    """phi at which l_x sin(2 t) cos(phi) + l_z cos(2 t) = 0."""
+    """Phi at which l_x sin(2 t) cos(phi) + l_z cos(2 t) = 0."""
     a, b = lx * mpmath.sin(2 * _tilt(u)), lz * mpmath.cos(2 * _tilt(u))
     if a <= abs(b):
         return mpmath.pi + 0 if b > 0 else mpf(0)
@@ -70,13 +70,10 @@ def _horizon_coordinate(phi, lx, lz):
 
 
 _ROWS = "u 0 and 1e-12 to pi/2"
-_GRAZING = "where the horizon touches a row"
 
 CASES = [
     Case("half view_row, sine", ("u",), _rows, _ROWS, _row, lambda u: mpmath.sin(_tilt(u)), 0),
-    Case(
-        "half view_row, cosine", ("u",), _rows, _ROWS, _row, lambda u: mpmath.cos(_tilt(u)), 1, "next to u = pi/2"
-    ),
+    Case("half view_row, cosine", ("u",), _rows, _ROWS, _row, lambda u: mpmath.cos(_tilt(u)), 1, "next to u = pi/2"),
     Case("half view_row, Jacobian", ("u",), _rows, _ROWS, _row, _jacobian, 2),
     Case(
         "half horizon_azimuth",
@@ -85,8 +82,6 @@ CASES = [
         "edges of 90 rows, light at 0 and 1e-12 rad to 89.999 degrees",
         _azimuth,
         _horizon_azimuth,
-        0,
-        _GRAZING,
     ),
     Case(
         "half horizon_coordinate",
@@ -95,7 +90,5 @@ CASES = [
         "phi 0 to 180 degrees, light at 0 and 1e-12 rad to 89.999 degrees",
         _coordinate,
         _horizon_coordinate,
-        0,
-        _GRAZING,
     ),
 ]

@@ -23,7 +23,7 @@ def _points(dense):
 
 CASES = [
     Case(
-        "transmittance of a medium",
+        "transmittance, path_length",
         ("tau", "cosine"),
         _points,
         "tau 0 and 1e-12 to 1e4, cos 1e-16 to 1 and 1 - 10^-k; below 1e-304 it is 0",

@@ -28,6 +28,14 @@ _GRID = "cos 1e-16 to 1 and 1 - 10^-k, ratio .1 to 20 and 1 ± 10^-k, critical a
 _ARGUMENTS = ("cosine", "ratio")
 
 CASES = [
-    Case("refracted_cosine", _ARGUMENTS, _points, _GRID, _refracted, exact.cosine_below),
+    Case(
+        "refracted_cosine",
+        _ARGUMENTS,
+        _points,
+        _GRID,
+        _refracted,
+        exact.cosine_below,
+        sensitive="at the very critical angle",
+    ),
     Case("refraction_shift", _ARGUMENTS, _points, _GRID, _refracted, exact.shift, 1),
 ]
