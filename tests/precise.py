@@ -1,4 +1,4 @@
-"""What the tests of precision share: which cases of `benchmarks.precision` belong to a function, and what they must keep to."""
+"""What the tests of precision share: the cases of `benchmarks.precision` for a function, and their limits."""
 
 import pytest
 
@@ -20,7 +20,7 @@ def each(cases, *functions):
 
 
 def holds(case, outcome):
-    """A relative 1e-12 everywhere, but where it is said what the value is sensitive to: a few roundings of the arguments."""
+    """A relative 1e-12; where it is said what a value is sensitive to, a few roundings of its arguments."""
     if case.sensitive:
         assert outcome.units <= UNITS, outcome
     else:

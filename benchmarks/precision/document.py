@@ -16,8 +16,7 @@ coarser grid to the same limits, `make test-all` this one.
   angles within 1e-15 of the critical one, widths of 1e-6, light at 89.999 degrees.
 * **The relative error stays below {limit:g}.** The last column names the exceptions, with the condition number of the
   worst: how many times a relative error of the arguments grows on its way to the value. There the error is told in
-  *units*: what half a unit in the last place of the arguments changes the value by. No program that rounds them once can
-  promise less than about one; allowed are {allowed}.
+  *units*: what half a unit in the last place of the arguments changes the value by. Allowed are {allowed}.
 * Half cells that the horizon cuts are compared with a quadrature over the part above it. Their arguments are the angle
   of the light and the four edges of the cell.
 * Samplers are maps from random numbers to directions. The table shows that the maps are computed as they should be.

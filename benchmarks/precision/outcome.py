@@ -68,8 +68,8 @@ def compare(points, found, exact, spread_at, floor=0.0):
 def spread(exact, arguments):
     """What a value changes by, if its arguments change one after the other by `UNITS` half units in the last place.
 
-    Away from singularities this is ``UNITS`` half units of ``sum abs(x df/dx)``, the condition number times the value; at a
-    root's, as next to the critical angle, it stays finite.
+    Away from singularities this is ``UNITS`` half units of ``sum abs(x df/dx)``, the condition number times the value;
+    at that of a root, as at the critical angle, it stays finite.
     """
     value, total = exact(*arguments), mpf(0)
     for i, a in enumerate(arguments):

@@ -9,7 +9,8 @@ from mpmath import cos, mp, mpf, pi, sin, sqrt
 from .exact import ggx, lambert
 from .outcome import DIGITS
 
-_STEP = mpf("1e-25")
+# Relative, and below any distance of the numbers to an end.
+_STEP = mpf("1e-30")
 
 
 def visible_normals(cosines, widths, numbers, turns):

@@ -59,7 +59,7 @@ def _number(x):
     off = x - 1.0
     if 0.0 < abs(off) < 1e-3:
         return f"1 {'+' if off > 0.0 else '−'} {abs(off):.3g}"
-    return f"{x:.4g}"
+    return f"{x:.6g}"
 
 
 def _condition(line):

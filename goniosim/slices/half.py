@@ -245,8 +245,8 @@ def _ring(t, start, end, theta):
         middle = 0.5 * (i + j)
         beside = np.minimum(middle, 2.0 * math.pi - middle)
         cosine = np.cos(middle)
-        # l.h and v_z in the middle, and integrals of what cos(phi_h) differs from its own value there, and of the square
-        # of that: differences of nearly equal numbers would leave no digits to cells of which the horizon spares little.
+        # l.h and v_z in the middle, and the integrals of what cos(phi_h) differs by from its value there, and of the
+        # square of that: differences of nearly equal numbers would leave few digits to what the horizon spares.
         facet = p * cosine + q
         height = 2.0 * a * np.sin(0.5 * (phi_0 + beside)) * np.sin(0.5 * (phi_0 - beside)) + lowest
         once = _excess(0.5 * d)

@@ -107,7 +107,7 @@ CASES = [
         _quadrant,
         mpmath.cos,
         1,
-        "next to pi/2, which no float is",
+        "next to pi/2, for which the nearest float stands",
     ),
     Case(
         "exp_nonpositive",

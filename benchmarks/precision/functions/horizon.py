@@ -73,7 +73,16 @@ _ROWS = "u 0 and 1e-12 to pi/2"
 
 CASES = [
     Case("half view_row, sine", ("u",), _rows, _ROWS, _row, lambda u: mpmath.sin(_tilt(u)), 0),
-    Case("half view_row, cosine", ("u",), _rows, _ROWS, _row, lambda u: mpmath.cos(_tilt(u)), 1, "next to u = pi/2"),
+    Case(
+        "half view_row, cosine",
+        ("u",),
+        _rows,
+        _ROWS,
+        _row,
+        lambda u: mpmath.cos(_tilt(u)),
+        1,
+        "at pi/2, for which the nearest float stands",
+    ),
     Case("half view_row, Jacobian", ("u",), _rows, _ROWS, _row, _jacobian, 2),
     Case(
         "half horizon_azimuth",
