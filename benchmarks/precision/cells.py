@@ -67,7 +67,7 @@ def _half(which, wholly):
     def measure(dense):
         points, found, expected, boxes = [], [], [], []
         for theta in np.radians(THETAS if dense else THETAS[4::4]).tolist():
-            for rows, columns in SHAPES if dense else SHAPES[:1]:
+            for rows, columns in SHAPES if dense else SHAPES[1:2]:
                 valid, *angles = half.geometry(rows, columns, theta)
                 for row, column in _some(valid, angles[SOLID], wholly, 8 if dense else 2):
                     points.append((math.degrees(theta), float(rows), float(columns), float(row), float(column)))

@@ -39,7 +39,7 @@ def test_fresnel_conductor_and_absorptance(case, dense):
 
 @each(REFRACTION, "refracted_cosine")
 def test_refracted_cosine(case, dense):
-    """1 - r^2 + (r c)^2 cancels at the critical angle; rounding the squares once left eight digits of the cosine."""
+    """1 - r^2 + (r c)^2 cancels at the critical angle; rounding the squares left a cosine of 1e-5 six digits."""
     holds(case, measure(case, dense))
 
 
