@@ -69,7 +69,7 @@ def _half(which, wholly):
         for theta in np.radians(THETAS if dense else THETAS[4::4]).tolist():
             for rows, columns in SHAPES if dense else SHAPES[1:2]:
                 valid, *angles = half.geometry(rows, columns, theta)
-                for row, column in _some(valid, angles[SOLID], wholly, 8 if dense else 2):
+                for row, column in _some(valid, angles[SOLID], wholly, 8 if dense else 4):
                     points.append((math.degrees(theta), float(rows), float(columns), float(row), float(column)))
                     found.append(float(angles[which][row, column]))
                     with mp.workdps(_DIGITS):
