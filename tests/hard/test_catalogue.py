@@ -1,0 +1,93 @@
+"""The catalogue of hard cases: each holds, is explained, and is found."""
+
+import math
+
+import numpy as np
+import pytest
+
+from goniosim.hard import CASES, check, run
+from goniosim.hard.catalogue import SCENES, Case
+from goniosim.hard.table import rows, verdict
+
+# Take longer than about two seconds.
+SLOW = {
+    "a_pilot_that_sees_nothing",
+    "a_target_out_of_reach",
+    "absorbing_nothing",
+    "any_number_of_threads",
+    "black_and_white_bases",
+    "cells_with_few_hits",
+    "channels_1e6_apart",
+    "dark_rough_stack",
+    "dark_stack",
+    "error_bars_of_audits",
+    "infinite_beside_zero",
+    "neighbouring_seeds",
+    "odd_numbers_of_rays",
+    "one_cell_receives_all",
+    "smooth_stacks",
+}
+
+
+def case(name):
+    return pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else [])
+
+
+@pytest.mark.parametrize("name", [case(name) for name in CASES])
+def test_holds(name):
+    """The difficulties are told at the head of the scenes in configs/hard, and by a failure here.
+
+    Checks of what is sampled allow 6 standard errors: false alarm 2e-9 for each number.
+    """
+    (outcome,) = run([CASES[name]])
+    failed = [f"{each.checked}: expected {each.expected}, got {each.got}" for each in outcome.checks if not each.holds]
+    assert not failed, f"{outcome.case.title} {outcome.case.why}"
+    assert outcome.checks
+
+
+def test_scenes_and_functions_belong_together():
+    assert {path.stem for path in SCENES.glob("*.yaml")} == set(CASES)
+    assert set(CASES) >= SLOW
+
+
+def test_each_says_what_breaks_naive_code_and_what_holds():
+    for each in CASES.values():
+        assert len(each.why) > 60, each.name
+        assert each.title.endswith("."), each.name
+
+
+def test_an_error_in_a_case_is_a_check_that_fails():
+    def breaks(scene):
+        """Break."""
+        yield check.statement("first", True, "so", "so")
+        raise ZeroDivisionError("float division")
+
+    (outcome,) = run([Case("smooth_stacks", "none", breaks)])
+    assert [each.holds for each in outcome.checks] == [True, False]
+    assert not outcome.holds
+    assert verdict([outcome]) == "1 case, 2 checks: 1 failed: smooth_stacks"
+    assert rows([outcome])[1]["got"] == "ZeroDivisionError: float division"
+
+
+def test_a_case_without_checks_fails():
+    (outcome,) = run([Case("smooth_stacks", "none", lambda scene: ())])
+    assert not outcome.holds
+
+
+@pytest.mark.parametrize("made", [check.relative, check.absolute])
+def test_what_is_not_a_number_fails(made):
+    assert not made("x", [1.0, math.nan], [1.0, 1.0], 1.0).holds
+    assert not check.in_sigmas("x", [1.0, math.nan], 0.1, 1.0).holds
+
+
+def test_the_worst_of_many_is_told():
+    made = check.in_sigmas("x", np.array([1.0, 1.2]), 0.1, np.array([1.0, 1.0]))
+    assert made.deviation == pytest.approx(2.0)
+    assert (made.checked, made.expected, made.got) == ("x (worst of 2)", "1", "1.2 ± 0.1")
+    assert made.holds and not check.in_sigmas("x", 1.7, 0.1, 1.0).holds
+
+
+def test_nothing_seen_may_be_a_path_unseen():
+    assert check.in_sigmas("x", 0.0, 0.0, 1e-6, unseen=1e-5).holds
+    assert not check.in_sigmas("x", 0.0, 0.0, 1e-6).holds
+    assert not check.in_sigmas("x", 1e-5, 1e-8, 1.1e-5, unseen=1e-5).holds
