@@ -120,6 +120,18 @@ def test_cells_by_points_and_by_nodes_agree():
     assert a.mean(axis=0) == pytest.approx(b.mean(axis=0), rel=0.01)
 
 
+@pytest.mark.parametrize("case", ["through", "in"])
+def test_no_floor_under_the_noise(case):
+    """Of cells that take points: sixteen times the light paths, a third of the scatter or less.
+
+    The root of 16 is 4. If points did not become more, 99 % of the scatter would be left; it is 2 to 10 %. Of 32
+    replicates a norm is known to a sixth: false-alarm rate below 1e-9.
+    """
+    _, made = operator_of(case, rows=8, columns=15)
+    few, many = (energies(made, size, 32, seed=1)[:, 0] for size in (1 << 10, 1 << 14))
+    assert np.linalg.norm(many.std(axis=0)) < 0.33 * np.linalg.norm(few.std(axis=0))
+
+
 def test_a_stop_gives_up():
     _, made = operator_of("out")
     stop = threading.Event()

@@ -296,6 +296,25 @@ def test_arrivals_at_a_narrow_exit_have_finer_nodes(alpha, base, polar):
     assert (shared > 1.8 * coarse, own > 1.8 * less) == (polar == 360, polar == 360)
 
 
+@pytest.mark.parametrize(
+    ("layers", "rows", "columns", "size", "parts"),
+    [
+        ([WIDE, METAL[0]], 90, 360, 1 << 14, (1, 1)),
+        ([WIDE, METAL[0]], 90, 360, 1 << 16, (1, 2)),
+        ([WIDE, METAL[0]], 90, 360, 1 << 17, (2, 2)),
+        ([NARROW, METAL[1]], 90, 360, 1 << 17, (1, 1)),
+        ([WIDE, METAL[0]], 12, 24, 1 << 13, (5, 5)),
+        ([WIDE, METAL[0]], 1, 1, 1 << 13, (64, 64)),
+        ([WIDE, METAL[0]], 90, 360, 1 << 30, (182, 182)),
+    ],
+)
+def test_looks_are_no_more_than_light_paths_once_each_cell_has_its_own(layers, rows, columns, size, parts):
+    """So that they take no more than a share of the time; replicates of usual slices begin with one look a point."""
+    made = Operator(make_plan(make_scene(layers, 30.0, "half", rows, columns)), (UP,))
+    assert made.parts(size) == parts
+    assert parts == (1, 1) or 0.5 * size < math.prod(parts) * made.looks <= size
+
+
 def test_one_operator_serves_one_way_out():
     plan = make_plan(make_scene([WIDE, AIR[1]], 30.0))
     assert "one way" in Operator.refusal(plan, (UP, DOWN))
