@@ -28,6 +28,7 @@ def _check(name, n):
     assert smallest(found) > 1e-9, found
 
 
+@pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize("name", STREAMS)
 def test_each_order_is_uniform_and_without_memory(name):
     """Boxes in 1, 2 and 3 dimensions, serial correlation, spectrum, bits; false alarm 1e-9 for each order."""
@@ -35,6 +36,7 @@ def test_each_order_is_uniform_and_without_memory(name):
 
 
 @pytest.mark.slow
+@pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize("name", STREAMS)
 def test_each_order_is_so_at_length(name):
     """Two million numbers; false alarm 1e-9 for each order."""
@@ -65,6 +67,7 @@ def _check_relatives(name, count, n):
     assert correlations(numbers(keys, n)) > 1e-9
 
 
+@pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize("name", RELATIVES)
 def test_relatives_are_uncorrelated(name):
     """The same counters of 120 keys, all pairs; false alarm 1e-9 for each kind of relatives."""
@@ -72,6 +75,7 @@ def test_relatives_are_uncorrelated(name):
 
 
 @pytest.mark.slow
+@pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize("name", RELATIVES)
 def test_many_relatives_are_uncorrelated(name):
     """1200 keys, 720,000 pairs; false alarm 1e-9 for each kind of relatives."""
@@ -105,12 +109,14 @@ def _points(*columns):
     return np.stack([np.ravel(column) for column in columns], axis=1)
 
 
+@pytest.mark.false_alarm(1e-9)
 def test_azimuths_go_with_nothing_that_is_drawn_beside_them():
     """Chi-square of triples; false alarm 1e-9."""
     _check_azimuths(1 << 16)
 
 
 @pytest.mark.slow
+@pytest.mark.false_alarm(1e-9)
 def test_many_azimuths_go_with_nothing_that_is_drawn_beside_them():
     """As above, of two million azimuths."""
     _check_azimuths(1 << 21)
