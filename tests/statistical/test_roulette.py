@@ -118,18 +118,17 @@ def test_survivors_are_restored_to_where_they_are_not_faint():
     bright = (before * scale[:, None]).max(axis=0)
     faint = bright < 1.0
     assert 0.3 * n < faint.sum() < 0.9 * n
-    survived, ledger = np.zeros(n), np.zeros((N_LEDGER, 2))
+    survived = np.zeros(n)
     for number in range(times):
-        batch = np.zeros((WEIGHT + 2, n))
+        batch, ledger = np.zeros((WEIGHT + 2, n)), np.zeros((N_LEDGER, 2))
         batch[WEIGHT:] = before
-        booked = ledger[LOST_ROULETTE].copy()
         assert roulette(batch, n, scale, np.empty(n), child_key(1, number), ledger)
         after = batch[WEIGHT:]
-        left = after[0] > 0.0
-        np.testing.assert_array_equal(after[:, ~faint], before[:, ~faint])
-        np.testing.assert_allclose(after[:, faint & left], (before / bright)[:, faint & left], rtol=1e-14)
-        assert not after[:, ~left].any()
-        np.testing.assert_allclose(ledger[LOST_ROULETTE] - booked, (before - after).sum(axis=1), rtol=0.0, atol=1e-11)
-        survived += left
+        survived += after[0] > 0.0
+    left = after[0] > 0.0
+    np.testing.assert_array_equal(after[:, ~faint], before[:, ~faint])
+    np.testing.assert_allclose(after[:, faint & left], (before / bright)[:, faint & left], rtol=1e-14)
+    assert not after[:, ~left].any()
+    np.testing.assert_allclose(ledger[LOST_ROULETTE], (before - after).sum(axis=1), rtol=0.0, atol=1e-12)
     deviation = (survived - times * bright)[faint].sum()
     assert abs(deviation) < 6.2 * np.sqrt(times * (bright * (1.0 - bright))[faint].sum())
