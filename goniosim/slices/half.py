@@ -230,7 +230,8 @@ def _ring(t, start, end, theta):
     q = math.cos(theta) * np.cos(t)
     a = math.sin(theta) * np.sin(2.0 * t)
     b = math.cos(theta) * np.cos(2.0 * t)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    # Next to theta = 0 the quotient overflows to what the clipping turns into all or nothing.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         cosine = np.where(a > 0.0, -b / a, np.where(b > 0.0, -1.0, 1.0))
     phi_0 = np.arccos(np.clip(cosine, -1.0, 1.0))
     solid = np.zeros_like(p)

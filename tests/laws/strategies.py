@@ -1,0 +1,126 @@
+"""Random scenes over all that is legal, as what a scene file holds; the ends of every range come often."""
+
+import math
+
+from hypothesis import strategies as st
+
+from goniosim.engine.estimators.choose import choose
+from goniosim.engine.plan import make_plan
+from goniosim.errors import ConfigError
+from goniosim.scene import parse_scene
+from reference.scenes import conductor, dielectric, lambert, medium
+
+# Deviations of an index from that of the medium above, on both sides of what counts as equal.
+NEAR = [0.0, 1e-15, 1e-12, 1.1e-12, 1e-9, 1e-6, 1e-3]
+NAMES = ["x", "0.5", "A" * 120, "_+=-.", "1e7", "null"]
+SPECIAL_ANGLES = [0.0, 1e-9, 1e-3, 30.0, 45.0, 60.0, 89.0, 89.9, 89.999]
+GRIDS = [(1, 1), (7, 11), (1, 8), (5, 1), (6, 12), (2, 3), (18, 36), (90, 7)]
+
+
+def spread(low, high):
+    """Positive numbers, as many in each decade."""
+    return st.floats(math.log(low), math.log(high)).map(lambda x: min(max(math.exp(x), low), high))
+
+
+def often(special, others):
+    """One of a few special values, or any other."""
+    return st.one_of(st.sampled_from(special), others)
+
+
+def per_channel(numbers):
+    """One number for all channels, or three, some of which may be equal."""
+    three = st.lists(numbers, min_size=3, max_size=3)
+    two = st.tuples(numbers, numbers, st.integers(0, 2)).map(lambda x: [x[0]] * x[2] + [x[1]] + [x[0]] * (2 - x[2]))
+    return st.one_of(numbers, three, two)
+
+
+alphas = often([0.0, 0.0, 1e-6, 1e-3, 1.0], spread(1e-6, 1.0))
+taus = often([0.0, 1e-300, 1e-12, 50.0, 700.0, 1e4, 1e9], spread(1e-6, 1e4))
+thin = often([0.0, 1e-12], spread(1e-6, 1.0))
+rhos = often([0.0, 1.0, 1e-12, 1.0 - 1e-9], st.floats(0.0, 1.0))
+metal_etas = often([1e-3, 0.05, 1.0, 1.5, 1e3], spread(1e-3, 1e3))
+kappas = often([0.0, 1e-12, 1.0, 1e6], spread(1e-9, 1e6))
+seeds = often([0, 1, 2**63 - 1], st.integers(0, 2**63 - 1))
+
+
+def dielectric_eta(index):
+    """Indices below that of a medium: any, those that are common, and those next to its own."""
+    near = st.tuples(st.sampled_from(NEAR), st.sampled_from([-1.0, 1.0])).map(lambda x: index * (1.0 + x[0] * x[1]))
+    return st.one_of(
+        st.sampled_from([1.0, 1.5, 1.33, 2.4, 0.1, 10.0]), spread(0.1, 10.0), near.map(lambda x: min(max(x, 0.1), 10.0))
+    )
+
+
+def in_channels(numbers, chromatic):
+    """Numbers of a layer: a scalar or a triple, or only scalars."""
+    return per_channel(numbers) if chromatic else numbers
+
+
+@st.composite
+def stacks(draw, *, most=12, fewest=1, taus=taus, rhos=rhos, grey_metals=False, bases=("glass", "metal", "lambert")):
+    """Layers from top to bottom: up to 12 interfaces, with a medium, two media or none between them."""
+    base = draw(st.sampled_from(bases))
+    count = draw(st.one_of(st.integers(fewest, min(3, most)), st.integers(fewest, most)))
+    layers, index = [], 1.0
+    for number in range(count):
+        if number == count - 1 and base == "metal":
+            eta, kappa = draw(in_channels(metal_etas, not grey_metals)), draw(in_channels(kappas, not grey_metals))
+            # What the walk takes for black: the medium's own index.
+            layers.append(conductor(*draw(st.sampled_from([(eta, kappa), (eta, kappa), (index, 0.0)])), draw(alphas)))
+        elif number == count - 1 and base == "lambert":
+            layers.append(lambert(draw(per_channel(rhos))))
+        else:
+            index = draw(dielectric_eta(index))
+            layers.append(dielectric(index, draw(alphas)))
+            if number < count - 1:
+                layers += [medium(draw(per_channel(taus))) for _ in range(draw(st.sampled_from([0, 1, 1, 2])))]
+    return layers
+
+
+def angles(layers):
+    """Distinct angles of incidence; those at which a medium is no longer entered are among them."""
+    indices = [layer["interface"]["eta"] for layer in layers if layer.get("interface", {}).get("type") == "dielectric"]
+    critical = [math.degrees(math.asin(index)) for index in indices if index < 1.0]
+    beside = [angle * (1.0 + shift) for angle in critical for shift in (0.0, 1e-12, -1e-12)]
+    special = SPECIAL_ANGLES + [angle for angle in beside if angle < 89.999]
+    return st.lists(often(special, st.floats(0.0, 89.999)), min_size=1, max_size=3, unique=True)
+
+
+def applies(scene, estimator):
+    """Whether an estimator serves a scene."""
+    parsed = parse_scene(scene)
+    try:
+        choose(make_plan(parsed), estimator, parsed.simulation.rays)
+    except ConfigError:
+        return False
+    return True
+
+
+@st.composite
+def scenes(draw, layers=None, *, estimators=("analog", "auto", "split", "connection", "operator")):
+    """Complete scenes of few rays and few cells."""
+    layers = draw(stacks() if layers is None else layers)
+    rows, columns = draw(often(GRIDS, st.tuples(st.integers(1, 12), st.integers(1, 24))))
+    scene = {
+        "material": {"name": draw(st.sampled_from(NAMES)), "layers": layers},
+        "incident": {"theta_deg": draw(angles(layers))},
+        "slice": {
+            "parametrization": draw(st.sampled_from(["classic", "half"])),
+            "rows": rows,
+            "columns": columns,
+        },
+        "simulation": {
+            "rays": draw(often([100, 101, 500], st.integers(100, 2000))),
+            "seed": draw(seeds),
+            "threads": 1,
+        },
+    }
+    orders = draw(st.one_of(st.none(), st.integers(1, 16)))
+    if orders is not None:
+        scene["simulation"]["orders"] = orders
+    # Operators take a second where the others take a moment.
+    wanted = draw(st.sampled_from([name for name in estimators for _ in range(1 if name == "operator" else 3)]))
+    scene["simulation"]["estimator"] = wanted if applies(scene, wanted) else "analog"
+    if scene["simulation"]["estimator"] == "operator":
+        del scene["incident"]["theta_deg"][1:]
+    return scene
