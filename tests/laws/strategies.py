@@ -2,10 +2,15 @@
 
 import math
 
+import numpy as np
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from goniosim.engine.estimators.choose import choose
+from goniosim.engine.layout import N_LEDGER, STAGES
 from goniosim.engine.plan import make_plan
+from goniosim.engine.tally import record_length
+from goniosim.engine.unit import Workspace, pilot_key
 from goniosim.errors import ConfigError
 from goniosim.scene import parse_scene
 from reference.scenes import conductor, dielectric, lambert, medium
@@ -15,6 +20,11 @@ NEAR = [0.0, 1e-15, 1e-12, 1.1e-12, 1e-9, 1e-6, 1e-3]
 NAMES = ["x", "0.5", "A" * 120, "_+=-.", "1e7", "null"]
 SPECIAL_ANGLES = [0.0, 1e-9, 1e-3, 30.0, 45.0, 60.0, 89.0, 89.9, 89.999]
 GRIDS = [(1, 1), (7, 11), (1, 8), (5, 1), (6, 12), (2, 3), (18, 36), (90, 7)]
+
+# Rays of a trial that tells whether light is caught in a stack, and events and stages that few are enough for.
+TRIED = 128
+MOST_EVENTS = 200_000
+MOST_STAGES = 2000
 
 
 def spread(low, high):
@@ -36,6 +46,8 @@ def per_channel(numbers):
 
 alphas = often([0.0, 0.0, 1e-6, 1e-3, 1.0], spread(1e-6, 1.0))
 taus = often([0.0, 1e-300, 1e-12, 50.0, 700.0, 1e4, 1e9], spread(1e-6, 1e4))
+# Of media whose sum is to be legal.
+parts = st.lists(taus.map(lambda tau: min(tau, 1e8)), min_size=2, max_size=4)
 thin = often([0.0, 1e-12], spread(1e-6, 1.0))
 rhos = often([0.0, 1.0, 1e-12, 1.0 - 1e-9], st.floats(0.0, 1.0))
 metal_etas = often([1e-3, 0.05, 1.0, 1.5, 1e3], spread(1e-3, 1e3))
@@ -57,9 +69,9 @@ def in_channels(numbers, chromatic):
 
 
 @st.composite
-def stacks(draw, *, most=12, fewest=1, taus=taus, rhos=rhos, grey_metals=False, bases=("glass", "metal", "lambert")):
+def stacks(draw, *, most=12, fewest=1, alphas=alphas, taus=taus, rhos=rhos, grey_metals=False):
     """Layers from top to bottom: up to 12 interfaces, with a medium, two media or none between them."""
-    base = draw(st.sampled_from(bases))
+    base = draw(st.sampled_from(["glass", "metal", "lambert"]))
     count = draw(st.one_of(st.integers(fewest, min(3, most)), st.integers(fewest, most)))
     layers, index = [], 1.0
     for number in range(count):
@@ -75,6 +87,16 @@ def stacks(draw, *, most=12, fewest=1, taus=taus, rhos=rhos, grey_metals=False, 
             if number < count - 1:
                 layers += [medium(draw(per_channel(taus))) for _ in range(draw(st.sampled_from([0, 1, 1, 2])))]
     return layers
+
+
+def many_faced(**given):
+    """Layers of two interfaces or more: there is something between them."""
+    return stacks(fewest=2, **{"most": 12, **given})
+
+
+def with_layers(scene, layers):
+    """The same scene of another stack."""
+    return {**scene, "material": {**scene["material"], "layers": layers}}
 
 
 def angles(layers):
@@ -94,6 +116,21 @@ def applies(scene, estimator):
     except ConfigError:
         return False
     return True
+
+
+def lingers(scene):
+    """Whether light is caught in the stack for so long that few rays take seconds."""
+    plan = make_plan(parse_scene(scene)).in_one_cell()
+    workspace = Workspace(plan)
+    for direction in range(len(plan.theta_deg)):
+        cells = workspace.cells(direction, 1, 1, np.zeros((plan.n_slots, record_length(plan.n_distinct))))
+        workspace.begin(TRIED)
+        ledger = np.zeros((N_LEDGER, plan.n_distinct))
+        if not workspace.advance(direction, pilot_key(direction), MOST_EVENTS, ledger, cells):
+            return True
+        if workspace.state[STAGES] > MOST_STAGES:
+            return True
+    return False
 
 
 @st.composite
@@ -123,4 +160,5 @@ def scenes(draw, layers=None, *, estimators=("analog", "auto", "split", "connect
     scene["simulation"]["estimator"] = wanted if applies(scene, wanted) else "analog"
     if scene["simulation"]["estimator"] == "operator":
         del scene["incident"]["theta_deg"][1:]
+    assume(not lingers(scene))
     return scene

@@ -5,9 +5,8 @@ import math
 import numpy as np
 
 from goniosim.engine import simulate
-from goniosim.engine.stages import OPAQUE
 from goniosim.engine.plan import make_plan
-from goniosim.engine.stages import SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
+from goniosim.engine.stages import OPAQUE, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 from goniosim.scene import parse_scene
 from goniosim.sums import block_sums
 from laws.law import law
