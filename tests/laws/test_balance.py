@@ -18,7 +18,7 @@ LEDGER = {"reflection/internal": "reflected_internal", "transmission": "transmit
 RARE = 1e-12
 
 
-@law(fast=36, slow=800, scene=scenes())
+@law(fast=44, slow=800, scene=scenes())
 def test_everything_is_finite_and_adds_up(scene):
     """Sums to 1e-12; the sampled direct reflection to what happens once in 1e12 (Bernstein's inequality)."""
     parsed = parse_scene(scene)

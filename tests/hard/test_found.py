@@ -1,4 +1,4 @@
-"""What random legal scenes have found."""
+"""What the laws of `tests/laws` have found among random scenes."""
 
 import numpy as np
 import pytest
