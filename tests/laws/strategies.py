@@ -13,6 +13,7 @@ from goniosim.engine.tally import record_length
 from goniosim.engine.unit import Workspace, pilot_key
 from goniosim.errors import ConfigError
 from goniosim.scene import parse_scene
+from laws.alike import in_order
 from reference.scenes import conductor, dielectric, lambert, medium
 
 # Deviations of an index from that of the medium above, on both sides of what counts as equal.
@@ -20,6 +21,8 @@ NEAR = [0.0, 1e-15, 1e-12, 1.1e-12, 1e-9, 1e-6, 1e-3]
 NAMES = ["x", "0.5", "A" * 120, "_+=-.", "1e7", "null"]
 SPECIAL_ANGLES = [0.0, 1e-9, 1e-3, 30.0, 45.0, 60.0, 89.0, 89.9, 89.999]
 GRIDS = [(1, 1), (7, 11), (1, 8), (5, 1), (6, 12), (2, 3), (18, 36), (90, 7)]
+# Which of three numbers the channels take: in the same ones everywhere, so that some channels are alike.
+ALIKE = [(0, 1, 2), (0, 1, 2), (0, 0, 1), (0, 1, 0), (0, 1, 1)]
 
 # Rays of a trial that tells whether light is caught in a stack, and events and stages that few are enough for.
 TRIED = 128
@@ -37,11 +40,14 @@ def often(special, others):
     return st.one_of(st.sampled_from(special), others)
 
 
+def unequal(numbers):
+    """Three numbers for the channels."""
+    return st.lists(numbers, min_size=3, max_size=3)
+
+
 def per_channel(numbers):
-    """One number for all channels, or three, some of which may be equal."""
-    three = st.lists(numbers, min_size=3, max_size=3)
-    two = st.tuples(numbers, numbers, st.integers(0, 2)).map(lambda x: [x[0]] * x[2] + [x[1]] + [x[0]] * (2 - x[2]))
-    return st.one_of(numbers, three, two)
+    """One number for all channels, or one for each."""
+    return st.one_of(numbers, unequal(numbers))
 
 
 alphas = often([0.0, 0.0, 1e-6, 1e-3, 1.0], spread(1e-6, 1.0))
@@ -63,30 +69,25 @@ def dielectric_eta(index):
     )
 
 
-def in_channels(numbers, chromatic):
-    """Numbers of a layer: a scalar or a triple, or only scalars."""
-    return per_channel(numbers) if chromatic else numbers
-
-
 @st.composite
-def stacks(draw, *, most=12, fewest=1, alphas=alphas, taus=taus, rhos=rhos, grey_metals=False):
+def stacks(draw, *, most=12, fewest=1, alphas=alphas, taus=taus, rhos=rhos, colours=per_channel, of_metals=per_channel):
     """Layers from top to bottom: up to 12 interfaces, with a medium, two media or none between them."""
     base = draw(st.sampled_from(["glass", "metal", "lambert"]))
     count = draw(st.one_of(st.integers(fewest, min(3, most)), st.integers(fewest, most)))
     layers, index = [], 1.0
     for number in range(count):
         if number == count - 1 and base == "metal":
-            eta, kappa = draw(in_channels(metal_etas, not grey_metals)), draw(in_channels(kappas, not grey_metals))
+            eta, kappa = draw(of_metals(metal_etas)), draw(of_metals(kappas))
             # What the walk takes for black: the medium's own index.
             layers.append(conductor(*draw(st.sampled_from([(eta, kappa), (eta, kappa), (index, 0.0)])), draw(alphas)))
         elif number == count - 1 and base == "lambert":
-            layers.append(lambert(draw(per_channel(rhos))))
+            layers.append(lambert(draw(colours(rhos))))
         else:
             index = draw(dielectric_eta(index))
             layers.append(dielectric(index, draw(alphas)))
             if number < count - 1:
-                layers += [medium(draw(per_channel(taus))) for _ in range(draw(st.sampled_from([0, 1, 1, 2])))]
-    return layers
+                layers += [medium(draw(colours(taus))) for _ in range(draw(st.sampled_from([0, 1, 1, 2])))]
+    return in_order(layers, draw(st.sampled_from(ALIKE)))
 
 
 def many_faced(**given):

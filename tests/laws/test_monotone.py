@@ -14,6 +14,11 @@ from laws.strategies import many_faced, scenes, spread, stacks, thin, with_layer
 LEAVES = ("reflected_internal", "transmitted")
 
 
+def grey(numbers):
+    """The same in all channels."""
+    return numbers
+
+
 def ordered(layers):
     """The same with the red channel brightest, and the blue one darkest."""
     layers = copy.deepcopy(layers)
@@ -25,7 +30,7 @@ def ordered(layers):
     return layers
 
 
-@law(fast=10, slow=200, scene=scenes(stacks(grey_metals=True)))
+@law(fast=10, slow=200, scene=scenes(stacks(of_metals=grey)))
 def test_the_channel_that_absorbs_more_is_darker(scene):
     """Channels share their paths, roulette included: to rounding, wherever several numbers are added up."""
     result = simulate(parse_scene(with_layers(scene, ordered(scene["material"]["layers"]))))
@@ -39,7 +44,7 @@ def test_the_channel_that_absorbs_more_is_darker(scene):
 @law(
     fast=6,
     slow=150,
-    scene=scenes(many_faced(most=4, taus=thin, rhos=st.floats(0.1, 1.0), grey_metals=True), estimators=("analog",)),
+    scene=scenes(many_faced(most=4, taus=thin, rhos=st.floats(0.1, 1.0), of_metals=grey), estimators=("analog",)),
     more=spread(1e-3, 1.0),
     less=st.floats(0.5, 0.99),
 )
