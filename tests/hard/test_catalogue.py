@@ -4,13 +4,26 @@ import math
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from goniosim.hard import CASES, check, run
 from goniosim.hard.catalogue import SCENES, Case
 from goniosim.hard.table import rows, verdict
 
 # Take longer than about two seconds.
-SLOW = {"smooth_stacks", "white_furnace_50_coats"}
+SLOW = {
+    "smooth_stacks",
+    "white_furnace_50_coats",
+    "coat_of_any_alpha",
+    "base_of_any_alpha",
+    "narrow_coat_over_a_base",
+    "normal_to_grazing",
+    "rows_at_the_horizon",
+    "light_in_cut_cells",
+    "rarer_below",
+    "dense_coats",
+    "dense_rough_interfaces",
+}
 
 
 def case(name):
@@ -75,3 +88,19 @@ def test_nothing_seen_may_be_a_path_unseen():
     assert check.in_sigmas("x", 0.0, 0.0, 1e-6, unseen=1e-5).holds
     assert not check.in_sigmas("x", 0.0, 0.0, 1e-6).holds
     assert not check.in_sigmas("x", 1e-5, 1e-8, 1.1e-5, unseen=1e-5).holds
+
+
+@pytest.mark.parametrize("freedom", [6, 138])
+def test_a_chi_square_in_sigmas(freedom):
+    """Wilson and Hilferty's formula is good to some per cent out there."""
+    for sigmas in (5.5, -3.0):
+        made = check.chi_square("x", [np.sqrt(stats.chi2.isf(stats.norm.sf(sigmas), freedom))], freedom)
+        assert made.holds and made.deviation == pytest.approx(abs(sigmas), rel=0.05)
+    assert not check.chi_square("x", [np.sqrt(stats.chi2.isf(1e-11, freedom))], freedom).holds
+    assert not check.chi_square("x", [math.nan], freedom).holds
+
+
+def test_students_t_in_sigmas():
+    t = stats.t.isf(stats.norm.sf(5.5), 31)
+    assert check.t_in_sigmas("x", [0.1, -t], 31).deviation == pytest.approx(5.5, rel=0.01)
+    assert not check.t_in_sigmas("x", [math.nan, 0.0], 31).holds

@@ -1,8 +1,8 @@
 """Where light goes at one rough interface: single scattering by GGX facets with separable Smith masking.
 
 Slopes of facets, p = alpha tan(t) (cos phi, sin phi), have the density 2 sin(t) cos(t) dt dphi / (2 pi). A direction w
-sees them with the weight G1(w) (w.m) / (w_z m_z), m being the normal. Sums over t are by Gauss's rule between the angles,
-known in closed form, at which facets turn away from w, send light below the horizon, or begin to reflect all.
+sees them with the weight G1(w) (w.m) / (w_z m_z), m being the normal. Sums over t are by Gauss's rule between the
+angles, known in closed form, at which facets turn away from w, send light below the horizon, or begin to reflect all.
 """
 
 import math
