@@ -99,7 +99,7 @@ def critical_angle(scene: Scene) -> Iterator[Check]:
             # Sine and cosine are good to 1e-16; the square of what goes through is in proportion to their distance
             # from the critical ones. 1 - R is good to 1e-16 too.
             distance = math.radians(away) * math.cos(math.radians(critical)) * eta
-            yield relative(f"{eta}: {away:g} degrees before", got, wanted, 4e-16 / distance + 1e-15 / wanted)
+            yield relative(f"{eta}: {away:g} degrees before", got, wanted, 1e-16 / distance + 1e-15 / wanted)
         yield absolute(f"{eta}: beyond", through[beyond], 0.0, 0.0)
         energy, stderr = result.audit.energy["transmitted"][:, 0], result.audit.stderr["transmitted"][:, 0]
         error = with_rare(stderr[before], scene.simulation.rays)
