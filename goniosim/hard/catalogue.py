@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..scene import Scene, load_scene
 from .check import Check
-from .topics import angles, indices, media, smoothness
+from .topics import angles, chromatic, counting, indices, media, models, randomness, smoothness
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
@@ -64,6 +64,10 @@ TOPICS = {
     "Angles and cells": angles.CASES,
     "Refractive indices": indices.CASES,
     "Media and stacks": media.CASES,
+    "Channels": chromatic.CASES,
+    "Counting": counting.CASES,
+    "Random numbers": randomness.CASES,
+    "Analytic models": models.CASES,
 }
 
 CASES = {check.__name__: Case(check.__name__, topic, check) for topic, checks in TOPICS.items() for check in checks}

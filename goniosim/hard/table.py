@@ -81,7 +81,8 @@ def markdown(outcomes: Sequence[Outcome]) -> str:
         "Scenes at the edges of what can be described, each held against what is exactly known of it. Written by",
         "`goniosim hard -o docs/hard_cases.md`, which checks the same on any machine; `goniosim hard NAME` checks one.",
         "The scenes stand in `configs/hard`. Where several numbers are compared, the table tells the one that is",
-        "furthest off. A right number is more than 6 standard errors off in 2e-9 of all seeds, and seeds are fixed.",
+        "furthest off. A right number is more than 6 standard errors off in 2e-9 of all seeds if it is normally",
+        "distributed, in 1e-6 if its error comes from 32 replicates; seeds are fixed.",
         "",
         f"{verdict(outcomes)}.",
     ]

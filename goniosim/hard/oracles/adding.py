@@ -3,9 +3,10 @@
 An interface of reflectance R and transmittance T = 1 - R over a medium that passes a of the light at one crossing,
 over a stack of reflectance r, gives with A = 1 - a^2 r
 
-    1 - r' = T A / (T + R A),    t' = T a t / (T + R A),
+    1 - r' = T A / (T + R A),    t' = T a t / (T + R A),    r' = R + T^2 a^2 r / (T + R A),
 
-in which nothing is subtracted: guided light, and stacks that lose next to nothing, keep their digits. All light has one
+in which nothing is subtracted: guided light, stacks that lose next to nothing, and those that send next to nothing back
+keep their digits. All light has one
 invariant n sin(theta), so that the sines of all layers are known at once.
 """
 
@@ -63,23 +64,29 @@ def _shares(scene: Scene, cosine: float, channel: int) -> tuple[float, float, fl
     vertical = _vertical(index, index[0] * cosine, 0)
     if base is not None:
         end = _conductor(vertical[-1], index[-1], complex(base.eta_rgb[channel], base.kappa_rgb[channel]))
-        loss, through = added(index, vertical, tau, 1.0 - end, 0.0)
+        loss, through, inner = added(index, vertical, tau, end, 1.0 - end, 0.0)
     elif diffuse is not None:
         # What reaches the base, all of it taken for absorbed at first.
-        loss, through = added(index, vertical, tau, 1.0, 1.0)
+        loss, through, inner = added(index, vertical, tau, 0.0, 1.0, 1.0)
         back, out = _diffuse(index, tau)
         rho = diffuse.rho_rgb[channel]
-        loss = loss - through * rho * out / (1.0 - rho * back)
-        through = 0.0
+        diffused = through * rho * out / (1.0 - rho * back)
+        loss, inner, through = loss - diffused, inner + diffused, 0.0
     else:
-        loss, through = added(index, vertical, tau, 1.0, 1.0, open_below=True)
+        loss, through, inner = added(index, vertical, tau, 0.0, 1.0, 1.0, open_below=True)
     direct = 1.0 - float(_transmitted(index, vertical, 0)) if faces else 0.0
-    return direct, 1.0 - float(loss) - direct, float(through), float(loss) - float(through)
+    return direct, float(inner), float(through), float(loss) - float(through)
 
 
 def added(
-    index: np.ndarray, vertical: np.ndarray, tau: np.ndarray, loss: float, through: float, open_below: bool = False
-) -> tuple[np.ndarray, np.ndarray]:
+    index: np.ndarray,
+    vertical: np.ndarray,
+    tau: np.ndarray,
+    back: float,
+    loss: float,
+    through: float,
+    open_below: bool = False,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Put interfaces and media on what lies below, from the lowest up.
 
     Parameters
@@ -90,21 +97,22 @@ def added(
         Index times cosine of the light in each.
     tau : ndarray
         Optical depth below each interface; below the last one only if something lies there.
-    loss, through : float
-        1 - reflectance and transmittance of what lies below.
+    back, loss, through : float
+        Reflectance of what lies below, 1 minus it, and its transmittance.
     open_below : bool
         Nothing lies there.
 
     Returns
     -------
-    loss, through : ndarray
-        Of the whole.
+    loss, through, inner : ndarray
+        1 - reflectance and transmittance of the whole; its reflectance without that of the top interface.
     """
-    loss, through = (np.broadcast_to(each, vertical.shape[1:]) for each in (loss, through))
+    back, loss, through = (np.broadcast_to(each, vertical.shape[1:]) for each in (back, loss, through))
+    inner = back
     for k in range(len(index) - 2, -1, -1):
         t = _transmitted(index, vertical, k)
         if open_below and k == len(index) - 2:
-            loss, through = t, t
+            back, loss, through, inner = 1.0 - t, t, t, np.zeros_like(t)
             continue
         cosine = np.maximum(vertical[k + 1] / index[k + 1], 1e-300)
         depth = tau[k] / cosine
@@ -113,8 +121,9 @@ def added(
         scale = t + (1.0 - t) * swallowed
         # Light that the interface reflects totally never comes below it.
         scale = np.where(t > 0.0, scale, 1.0)
-        loss, through = t * swallowed / scale, t * once * through / scale
-    return loss, through
+        inner = t * t * once * once * back / scale
+        back, loss, through = 1.0 - t + inner, t * swallowed / scale, t * once * through / scale
+    return loss, through, inner
 
 
 def _vertical(index: np.ndarray, known: float | np.ndarray, where: int) -> np.ndarray:
@@ -158,7 +167,7 @@ def _diffuse(index: np.ndarray, tau: np.ndarray) -> tuple[float, float]:
         # Seen from below: the order of the layers is reversed, and the medium next to the base comes first.
         upwards = np.concatenate([[n], index[::-1][1:]])
         vertical = _vertical(upwards, n * mu, 0)
-        loss, through = added(upwards, vertical, tau[::-1][1:], 1.0, 1.0, open_below=True)
+        loss, through, _ = added(upwards, vertical, tau[::-1][1:], 0.0, 1.0, 1.0, open_below=True)
         first = np.exp(-(tau[-1] if len(tau) else 0.0) / np.maximum(mu, 1e-300))
         back += float(np.sum(measure * first * first * (1.0 - loss)))
         out += float(np.sum(measure * first * through))
