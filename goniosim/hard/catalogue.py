@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..scene import Scene, load_scene
 from .check import Check
-from .topics import chromatic, counting, media, models, randomness
+from .topics import angles, chromatic, counting, indices, media, models, randomness, smoothness
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
@@ -60,6 +60,9 @@ class Case:
 
 # For each topic, the functions that check its cases. A new case is a scene file and a function in one of these.
 TOPICS = {
+    "Smooth and rough": smoothness.CASES,
+    "Angles and cells": angles.CASES,
+    "Refractive indices": indices.CASES,
     "Media and stacks": media.CASES,
     "Channels": chromatic.CASES,
     "Counting": counting.CASES,

@@ -70,6 +70,40 @@ def in_sigmas(
     return _judged(_of_many(checked, got), f"{expected[worst]:.6g}", shown, deviations[worst], "sigma", limit)
 
 
+def chi_square(checked: str, deviations: ArrayLike, freedom: int, limit: float = SIGMAS) -> Check:
+    """Compare a sum of squares of standardised deviations with its mean, and tell it in sigmas of a normal one.
+
+    Parameters
+    ----------
+    checked : str
+    deviations : array_like
+        In standard errors.
+    freedom : int
+        How many of them are independent.
+    limit : float
+        Standard errors.
+
+    Returns
+    -------
+    Check
+    """
+    statistic = float(np.sum(np.square(deviations)))
+    # Wilson and Hilferty: the cube root of a chi-square is nearly normal.
+    width = 2.0 / (9.0 * freedom)
+    sigmas = abs((statistic / freedom) ** (1.0 / 3.0) - (1.0 - width)) / math.sqrt(width)
+    return _judged(f"{checked}: chi-square", f"{freedom}", f"{statistic:.4g}", sigmas, "sigma", limit)
+
+
+def t_in_sigmas(checked: str, t: ArrayLike, freedom: int, limit: float = SIGMAS) -> Check:
+    """Compare deviations from 0 over errors that were estimated from a few numbers; the worst is told, in sigmas."""
+    t = np.atleast_1d(np.asarray(t, float))
+    # Wallace: Student's t as a normal number of the same probability.
+    sigmas = (8 * freedom + 1) / (8 * freedom + 3) * np.sqrt(freedom * np.log1p(t**2 / freedom))
+    worst = _worst(sigmas)
+    found = f"{t[worst]:.3g} standard errors"
+    return _judged(_of_many(checked, t), "0", found, sigmas[worst], "sigma", limit)
+
+
 def relative(checked: str, got: ArrayLike, expected: ArrayLike, limit: float) -> Check:
     """Compare numbers that have no noise, by their relative difference; of several numbers the worst is told."""
     got, expected = np.broadcast_arrays(np.asarray(got, float), np.asarray(expected, float))

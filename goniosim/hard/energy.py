@@ -1,15 +1,18 @@
 """Checks of where the light of a result goes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ..result import Result
 from .check import Check, absolute, in_sigmas, statement
 from .oracles.adding import Energies
+from .oracles.rough import Shares
 
 # What the entries of an audit may miss of 1 by rounding.
 CLOSED = 1e-12
+# What no path of N has met has a share below 20 / N, but for 2e-9 of all seeds: as a limit of 6 standard errors.
+RARE = 20.0 / 6.0
 
 
 def closes(result: Result) -> Check:
@@ -46,3 +49,33 @@ def as_added(result: Result, exact: Energies) -> Iterator[Check]:
         yield absolute("reflected directly", result.audit.direct_integrated, exact.direct, CLOSED)
     yield closes(result)
     yield sane(result)
+
+
+def with_rare(stderr: np.ndarray, rays: float) -> np.ndarray:
+    """Widen standard errors by what rare paths of full weight may be missing."""
+    return np.hypot(stderr, RARE / rays)
+
+
+def as_scattered(results: Sequence[Result], exact: Sequence[Sequence[Shares]]) -> Iterator[Check]:
+    """Check shares of the light of single rough interfaces, one for each result and each of its directions."""
+    for name, entry in {
+        "reflected": "reflected_direct",
+        "transmitted": "transmitted",
+        "absorbed": "absorbed_base",
+        "lost_reflection": "lost_masked_reflection",
+        "lost_transmission": "lost_masked_transmission",
+    }.items():
+        share = np.array([[getattr(each, name) for each in row] for row in exact])[..., None]
+        got = np.array([result.audit.energy[entry] for result in results])
+        if share.any() or got.any():
+            error = [with_rare(result.audit.stderr[entry], result.rays.min()) for result in results]
+            yield in_sigmas(f"{name.replace('_', ' by ')}, sampled", got, np.array(error), share)
+    missing = np.array([result.audit.residual for result in results])
+    yield absolute("all light is accounted for: sum of the audit", 1.0 - missing, 1.0, CLOSED)
+    sanity = [sane(result) for result in results]
+    yield next((each for each in sanity if not each.holds), sanity[0])
+
+
+def directly(results: Sequence[Result]) -> np.ndarray:
+    """Return what the top interface reflects, integrated over cells, [result, direction]; channels are alike."""
+    return np.array([result.audit.direct_integrated[:, 0] for result in results])

@@ -1,9 +1,11 @@
 """Scenes that differ from one of the catalogue in a few places."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ..scene import Scene, parse_scene
+from .check import Check
 
 
 def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
@@ -33,3 +35,9 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
             where = where[key]
         where[last] = value
     return parse_scene(content)
+
+
+def labelled(label: str, checks: Iterable[Check]) -> Iterator[Check]:
+    """Say of each check which variant it is of."""
+    for check in checks:
+        yield replace(check, checked=f"{label}: {check.checked}")

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from goniosim.hard import CASES, check, run
 from goniosim.hard.catalogue import SCENES, Case
@@ -17,16 +18,25 @@ SLOW = {
     "a_target_out_of_reach",
     "absorbing_nothing",
     "any_number_of_threads",
+    "base_of_any_alpha",
     "black_and_white_bases",
     "cells_with_few_hits",
     "channels_1e6_apart",
+    "coat_of_any_alpha",
     "dark_rough_stack",
     "dark_stack",
+    "dense_coats",
+    "dense_rough_interfaces",
     "error_bars_of_audits",
     "infinite_beside_zero",
+    "light_in_cut_cells",
+    "narrow_coat_over_a_base",
     "neighbouring_seeds",
+    "normal_to_grazing",
     "odd_numbers_of_rays",
     "one_cell_receives_all",
+    "rarer_below",
+    "rows_at_the_horizon",
     "smooth_stacks",
 }
 
@@ -104,3 +114,19 @@ def test_nothing_seen_may_be_a_path_unseen():
     assert check.in_sigmas("x", 0.0, 0.0, 1e-6, unseen=1e-5).holds
     assert not check.in_sigmas("x", 0.0, 0.0, 1e-6).holds
     assert not check.in_sigmas("x", 1e-5, 1e-8, 1.1e-5, unseen=1e-5).holds
+
+
+@pytest.mark.parametrize("freedom", [6, 138])
+def test_a_chi_square_in_sigmas(freedom):
+    """Wilson and Hilferty's formula is good to some per cent out there."""
+    for sigmas in (5.5, -3.0):
+        made = check.chi_square("x", [np.sqrt(stats.chi2.isf(stats.norm.sf(sigmas), freedom))], freedom)
+        assert made.holds and made.deviation == pytest.approx(abs(sigmas), rel=0.05)
+    assert not check.chi_square("x", [np.sqrt(stats.chi2.isf(1e-11, freedom))], freedom).holds
+    assert not check.chi_square("x", [math.nan], freedom).holds
+
+
+def test_students_t_in_sigmas():
+    t = stats.t.isf(stats.norm.sf(5.5), 31)
+    assert check.t_in_sigmas("x", [0.1, -t], 31).deviation == pytest.approx(5.5, rel=0.01)
+    assert not check.t_in_sigmas("x", [math.nan, 0.0], 31).holds

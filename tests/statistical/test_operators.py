@@ -120,6 +120,7 @@ def test_cells_by_points_and_by_nodes_agree():
     assert a.mean(axis=0) == pytest.approx(b.mean(axis=0), rel=0.01)
 
 
+@pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize("case", ["through", "in"])
 def test_no_floor_under_the_noise(case):
     """Of cells that take points: sixteen times the light paths, a third of the scatter or less.

@@ -121,7 +121,7 @@ def test_light_through_both_interfaces_is_that_of_independent_paths(alpha, exit_
     analog = simulate(scene, rays=2_000_000, seed=seed, estimator="analog")
     straight = analog.components["transmission"].orders["order_1"]
     exact, error2 = straight.energy[0, 0].sum(axis=1), (straight.stderr[0, 0] ** 2).sum(axis=1)
-    found = gathered(np.zeros(2), "classic", 40, np.array([exit_alpha, 1.5]), [0.3], np.array([alpha, 1.5]), seed)
+    found = gathered(np.zeros(2), "classic", 40, np.array([exit_alpha, 1.5]), [0.3], np.array([alpha, 1.5]), seed=seed)
     assert (found[:, 1] == 0.0).all()
     rows = 2.0 * found[:, 0].sum(axis=2)
     error2 += rows.var(axis=0, ddof=1) / KEYS

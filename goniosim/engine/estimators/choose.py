@@ -133,7 +133,7 @@ def next_best(plan, sides, name, reason):
 def _named(plan, name, sides):
     """Groups of ways out that one instance of the estimator serves."""
     estimator = ESTIMATORS[name]
-    if estimator.refusal(plan, sides) is None:
+    if sides and estimator.refusal(plan, sides) is None:
         return [sides]
     reasons = {side: estimator.refusal(plan, (side,)) for side in sides}
     wrong = [f"{COMPONENTS[side]}: {reason}" for side, reason in reasons.items() if reason is not None]
