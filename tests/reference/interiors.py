@@ -1,0 +1,209 @@
+"""A rough dielectric in the interior of a stack, met by light of one direction, and what every cell must get.
+
+The engine integrates what the top interface reflects at once. Between index-matched smooth interfaces, which do
+nothing, the same interface is sampled, from above or from below. From below, rays are put into the queue where they
+would arrive; the walk is the one that all scenes take.
+"""
+
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+
+from goniosim.engine.estimate import moments
+from goniosim.engine.estimators.split import Split
+from goniosim.engine.layout import DOWN, UP, WEIGHT, X, Z
+from goniosim.engine.plan import make_plan
+from goniosim.engine.splitting.layout import RATIO
+from goniosim.engine.unit import BATCH, Tally, Workspace, child_key
+from goniosim.engine.walk import ABOVE, BELOW
+
+from .cell_integrals import integrate_cells
+from .chi_square import chi_square
+from .closed_forms import reflection_density, transmission_density
+from .replicates import make_replicates
+from .scenes import dielectric, make_scene
+from .score import score_of_paths, score_of_replicates
+
+ROWS, COLUMNS = 90, 36
+# Relative changes by which slopes are found.
+_STEP = 1e-3
+_BUDGET = 1 << 22
+
+
+@dataclass(frozen=True)
+class Law:
+    """What a path brings to each cell of a way out: mean, second moment, and slopes by the logarithms of parameters."""
+
+    mean: np.ndarray
+    second: np.ndarray
+    coin: np.ndarray
+    alpha: np.ndarray
+
+    def total(self):
+        """The same of all cells together."""
+        return Law(*(np.atleast_2d(each.sum()) for each in (self.mean, self.second, self.coin, self.alpha)))
+
+    def columns(self, width):
+        """The same of the first columns."""
+        return Law(*(each[:, :width] for each in (self.mean, self.second, self.coin, self.alpha)))
+
+
+@cache
+def law_of(passes, alpha, n, theta, parametrization):
+    """The law of what a rough interface of relative index ``n`` refracts, or reflects."""
+    density = transmission_density if passes else reflection_density
+
+    def integral(alpha, **options):
+        made = density(alpha, n, **options)
+        return integrate_cells(made, theta, ROWS, COLUMNS, parametrization, absolute=1e-10)
+
+    mean = integral(alpha)
+    coin = (integral(alpha, coin=1.0 - _STEP) - mean) / -_STEP
+    width = (integral(alpha * (1.0 + _STEP)) - mean) / _STEP
+    return Law(mean, integral(alpha, power=2), coin, width)
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """How light meets the interface.
+
+    Attributes
+    ----------
+    alpha, n : float
+        Width; index beyond over that where the light comes from.
+    theta : float
+        In degrees.
+    from_below : bool
+    parametrization : str
+    last : bool
+        Whether nothing is below the interface, if it is met from above: what it refracts is what leaves.
+    """
+
+    alpha: float
+    n: float
+    theta: float
+    from_below: bool = False
+    parametrization: str = "half"
+    last: bool = False
+
+    def plan(self):
+        """The stack, lowered."""
+        index = 1.0 / self.n if self.from_below else self.n
+        below = [] if self.last else [dielectric(index)]
+        layers = [dielectric(1.0), dielectric(index, self.alpha), *below]
+        return make_plan(make_scene(layers, self.theta, self.parametrization, ROWS, COLUMNS))
+
+    def laws(self):
+        """Of what is reflected and of what is refracted, each on the cells that tell most of it.
+
+        Half cells resolve reflected lobes of any width, and refracted ones at normal incidence; refracted light is
+        one number in other half slices, for the integrals there would take their time.
+        """
+        of = partial(law_of, alpha=self.alpha, n=self.n, theta=self.theta)
+        reflected = of(passes=False, parametrization=self.parametrization)
+        if self.parametrization == "half" and self.theta > 0.0:
+            return reflected, of(passes=True, parametrization="classic").total()
+        return reflected, of(passes=True, parametrization=self.parametrization)
+
+    def ways(self):
+        """Ways out of what is reflected and of what is refracted."""
+        return (DOWN, UP) if self.from_below else (UP, DOWN)
+
+
+def analog_energies(meeting, rays, seed):
+    """Energy in the cells of the reflected and of the refracted light by the analog walk."""
+    plan = meeting.plan()
+    workspace, tally = Workspace(plan), Tally(plan)
+    cells = workspace.cells(0, ROWS, COLUMNS, tally.histogram)
+
+    def go_on(number):
+        while not workspace.advance(0, child_key(seed, number), _BUDGET, tally.ledgers[0], cells):
+            pass
+
+    if meeting.from_below:
+        for number in range(rays // BATCH):
+            workspace.begin(0)
+            _arrive(workspace.queues, workspace.filled, plan, 2 + BELOW)
+            go_on(number)
+        rays = rays // BATCH * BATCH
+    else:
+        workspace.begin(rays)
+        go_on(0)
+    return [moments(tally.histogram, plan, plan.slots[way, 0], 1)[0][0] / rays for way in meeting.ways()]
+
+
+def split_energies(meeting, size, count, seed):
+    """Replicates of the reflected and of the refracted light by the split walk, on the columns that tell all.
+
+    Half of the replicates from below branch nowhere, as in a crowd.
+    """
+    plan = meeting.plan()
+    split = Split(plan, (UP, DOWN))
+    split.prepare()
+    if not meeting.from_below:
+        found = make_replicates(plan, split, size, seed, count)
+    else:
+        found = np.empty((count, plan.n_slots, plan.n_distinct, plan.rows, plan.width))
+        workspace = split.workspace()
+        for replicate, slices in enumerate(found):
+            workspace.begin(0)
+            for batch in range(size // BATCH):
+                _arrive(workspace.queues, workspace.filled, plan, 2 + BELOW)
+                workspace.queues[2 + BELOW, RATIO] = 1.0
+                key = child_key(child_key(seed, replicate), batch)
+                workspace.state[:] = 0
+                while not workspace.advance(0, key, _BUDGET, crowd=-(replicate % 2)):
+                    pass
+            workspace._collect(size // BATCH * BATCH, slices)
+    return [found[:, plan.slots[way, 0], 0] for way in meeting.ways()]
+
+
+def _arrive(queues, filled, plan, queue):
+    """Put a batch of rays of the plan's direction into a queue; all others are empty."""
+    filled[:] = 0
+    filled[queue] = BATCH
+    queues[queue, X : Z + 1, :BATCH] = plan.light[0][:, None]
+    queues[queue, WEIGHT : WEIGHT + plan.n_distinct, :BATCH] = 1.0
+
+
+def analog_scores(meeting, rays, seed):
+    """Chi-square, and scores of the coin and of the width, of the analog walk.
+
+    Returns
+    -------
+    chi_square : reference.chi_square.ChiSquare
+    coin, alpha : reference.score.Score
+    """
+    laws = meeting.laws()
+    rays = rays // BATCH * BATCH
+    energies = analog_energies(meeting, rays, seed)
+    energies = [_like(energy, law) for energy, law in zip(energies, laws, strict=True)]
+    observed, mean, second, coin, alpha = (np.concatenate([np.ravel(a) for a in pair]) for pair in _rows(energies, laws))
+    return (
+        chi_square(observed, mean, second, rays),
+        score_of_paths(observed, mean, second, coin, rays),
+        score_of_paths(observed, mean, second, alpha, rays),
+    )
+
+
+def split_scores(meeting, size, count, seed):
+    """Scores of the coin and of the width, of the split walk."""
+    laws = meeting.laws()
+    energies = split_energies(meeting, size, count, seed)
+    laws = [law if law.mean.size == 1 else law.columns(each.shape[-1]) for law, each in zip(laws, energies, strict=True)]
+    # The folded half holds half of the light.
+    energies = [_like(e, law, 2.0) for e, law in zip(energies, laws, strict=True)]
+    found = np.concatenate([each.reshape(count, -1) for each in energies], axis=1)
+    _, mean, second, coin, alpha = (np.concatenate([np.ravel(a) for a in pair]) for pair in _rows(energies, laws))
+    return score_of_replicates(found, mean, second, coin), score_of_replicates(found, mean, second, alpha)
+
+
+def _like(energy, law, twins=1.0):
+    """Energies in the cells of a law, or the sum of them."""
+    return twins * energy.sum(axis=(-2, -1), keepdims=True) if law.mean.size == 1 else energy
+
+
+def _rows(energies, laws):
+    """Energies, means, second moments and slopes of both ways out."""
+    return energies, *([getattr(law, name) for law in laws] for name in ("mean", "second", "coin", "alpha"))
