@@ -22,13 +22,16 @@ from .cell_integrals import integrate_cells
 from .chi_square import chi_square
 from .closed_forms import reflection_density, transmission_density
 from .replicates import make_replicates
-from .scenes import dielectric, make_scene
+from .rough_plastic import rough_plastic_laws
+from .scenes import dielectric, lambert, make_scene
 from .score import score_of_paths, score_of_replicates
+from .seeds import many_runs
 
 ROWS, COLUMNS = 90, 36
 # Relative changes by which slopes are found.
 _STEP = 1e-3
 _BUDGET = 1 << 22
+_RHO, _PLASTIC_ROWS = 0.8, 3
 
 
 @dataclass(frozen=True)
@@ -207,3 +210,19 @@ def _like(energy, law, twins=1.0):
 def _rows(energies, laws):
     """Energies, means, second moments and slopes of both ways out."""
     return energies, *([getattr(law, name) for law in laws] for name in ("mean", "second", "coin", "alpha"))
+
+
+def plastic_scores(n, theta, alpha, estimator, rays, runs, seed):
+    """Scores of the coin and of the width, on a rough dielectric over a Lambertian base of .8, by any estimator.
+
+    Replicates are the runs of independent paths, and the batches of all runs of other estimators.
+    """
+    laws = rough_plastic_laws(theta, alpha, n, _RHO, _PLASTIC_ROWS)
+    layers = [dielectric(n, alpha), lambert(_RHO)]
+    components, _ = many_runs(layers, theta, estimator, rays, runs, seed, rows=_PLASTIC_ROWS)
+    found = components["reflection/internal"]
+    # Its cells are few enough to be blocks.
+    slices = found.energy[:, 0] if found.batches is None else np.concatenate(found.batches[:, :, 0])
+    mean, coin, width = laws
+    rows = slices.sum(axis=-1)
+    return score_of_replicates(rows, mean, mean, coin), score_of_replicates(rows, mean, mean, width)
