@@ -6,13 +6,14 @@ enters, all returns to a base that forgets them, and, by reciprocity, what leave
 """
 
 import math
+from functools import cache
 
 import numpy as np
 
 from .closed_forms import coin_of, smith_g1
 
-_POINTS = 400
-_ANGLES = 48
+_POINTS = 150
+_ANGLES = 192
 # Relative changes by which slopes are found.
 _STEP = 1e-2
 
@@ -59,6 +60,7 @@ def rough_plastic_rows(theta, alpha, n, rho, rows, coin=1.0):
     return radiance * 2.0 * math.pi / n**2 * (np.array(leaving) * (0.5 * step * weights)).sum(axis=1)
 
 
+@cache
 def rough_plastic_laws(theta, alpha, n, rho, rows):
     """Energies of the rows, and their slopes by the logarithms of coin and width."""
     mean = rough_plastic_rows(theta, alpha, n, rho, rows)

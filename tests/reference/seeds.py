@@ -13,7 +13,8 @@ from goniosim.engine.session import Session
 
 from .scenes import make_scene
 
-FALSE_ALARM = 1e-9
+# Sigmas beyond which a right error is with a probability of 1e-9.
+LIMIT = 6.11
 
 
 def many_runs(layers, theta, estimator, rays, count, seed=1, rows=3, columns=4, parametrization="classic"):
@@ -59,3 +60,27 @@ def stated_over_true(values, stderr):
     above, below = stats.chi2.sf(statistic, freedom), stats.chi2.cdf(statistic, freedom)
     sigmas = stats.norm.isf(above) if above < below else stats.norm.ppf(below)
     return float(np.sqrt(freedom / statistic)), float(sigmas)
+
+
+def scatter_of_cells(energy, stderr, known):
+    """Squared deviations from the mean of all runs over the squared stated errors, averaged over cells.
+
+    Cells may share paths: the runs are what is independent, and their scatter tells the error of the average.
+
+    Parameters
+    ----------
+    energy, stderr : ndarray, shape (count, ...)
+        Of every run.
+    known : float
+        Cells count whose stated error is smaller than this share of the mean.
+
+    Returns
+    -------
+    mean, error : float
+    """
+    count = len(energy)
+    mean, stated = energy.mean(axis=0), np.sqrt((stderr**2).mean(axis=0))
+    where = stated < known * mean
+    squares = ((energy - mean)[:, where] / stated[where]) ** 2 * (count / (count - 1.0))
+    per_run = squares.mean(axis=1)
+    return float(per_run.mean()), float(per_run.std(ddof=1) / np.sqrt(count))

@@ -61,7 +61,7 @@ PLASTICS = [(1.5, 85.0, 0.3), (1.0 / 2.4, 10.0, 0.3)]
 
 @pytest.mark.parametrize(
     ("estimator", "rays", "runs"),
-    [("analog", 65_536, 40), ("split", 65_536, 8), ("operator", 65_536, 3), ("connection", 65_536, 8)],
+    [("analog", 65_536, 100), ("split", 65_536, 8), ("operator", 65_536, 3), ("connection", 65_536, 8)],
 )
 def test_every_estimator_on_a_rough_plastic(estimator, rays, runs):
     """A closed form of three rows, whose light passes the interface on its way in, back, and out."""
