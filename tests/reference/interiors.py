@@ -16,7 +16,7 @@ from goniosim.engine.layout import DOWN, UP, WEIGHT, X, Z
 from goniosim.engine.plan import make_plan
 from goniosim.engine.splitting.layout import RATIO
 from goniosim.engine.unit import BATCH, Tally, Workspace, child_key
-from goniosim.engine.walk import ABOVE, BELOW
+from goniosim.engine.walk import BELOW
 
 from .cell_integrals import integrate_cells
 from .chi_square import chi_square
@@ -182,7 +182,9 @@ def analog_scores(meeting, rays, seed):
     rays = rays // BATCH * BATCH
     energies = analog_energies(meeting, rays, seed)
     energies = [_like(energy, law) for energy, law in zip(energies, laws, strict=True)]
-    observed, mean, second, coin, alpha = (np.concatenate([np.ravel(a) for a in pair]) for pair in _rows(energies, laws))
+    observed, mean, second, coin, alpha = (
+        np.concatenate([np.ravel(a) for a in pair]) for pair in _rows(energies, laws)
+    )
     return (
         chi_square(observed, mean, second, rays),
         score_of_paths(observed, mean, second, coin, rays),
@@ -194,7 +196,9 @@ def split_scores(meeting, size, count, seed):
     """Scores of the coin and of the width, of the split walk."""
     laws = meeting.laws()
     energies = split_energies(meeting, size, count, seed)
-    laws = [law if law.mean.size == 1 else law.columns(each.shape[-1]) for law, each in zip(laws, energies, strict=True)]
+    laws = [
+        law if law.mean.size == 1 else law.columns(each.shape[-1]) for law, each in zip(laws, energies, strict=True)
+    ]
     # The folded half holds half of the light.
     energies = [_like(e, law, 2.0) for e, law in zip(energies, laws, strict=True)]
     found = np.concatenate([each.reshape(count, -1) for each in energies], axis=1)
