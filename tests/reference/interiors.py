@@ -181,10 +181,8 @@ def analog_scores(meeting, rays, seed):
     laws = meeting.laws()
     rays = rays // BATCH * BATCH
     energies = analog_energies(meeting, rays, seed)
-    energies = [_like(energy, law) for energy, law in zip(energies, laws, strict=True)]
-    observed, mean, second, coin, alpha = (
-        np.concatenate([np.ravel(a) for a in pair]) for pair in _rows(energies, laws)
-    )
+    observed = _flat(_like(energy, law) for energy, law in zip(energies, laws, strict=True))
+    mean, second, coin, alpha = _flat_laws(laws)
     return (
         chi_square(observed, mean, second, rays),
         score_of_paths(observed, mean, second, coin, rays),
@@ -196,13 +194,12 @@ def split_scores(meeting, size, count, seed):
     """Scores of the coin and of the width, of the split walk."""
     laws = meeting.laws()
     energies = split_energies(meeting, size, count, seed)
-    laws = [
-        law if law.mean.size == 1 else law.columns(each.shape[-1]) for law, each in zip(laws, energies, strict=True)
-    ]
+    width = energies[0].shape[-1]
+    laws = [law if law.mean.size == 1 else law.columns(width) for law in laws]
     # The folded half holds half of the light.
-    energies = [_like(e, law, 2.0) for e, law in zip(energies, laws, strict=True)]
+    energies = [_like(energy, law, 2.0) for energy, law in zip(energies, laws, strict=True)]
     found = np.concatenate([each.reshape(count, -1) for each in energies], axis=1)
-    _, mean, second, coin, alpha = (np.concatenate([np.ravel(a) for a in pair]) for pair in _rows(energies, laws))
+    mean, second, coin, alpha = _flat_laws(laws)
     return score_of_replicates(found, mean, second, coin), score_of_replicates(found, mean, second, alpha)
 
 
@@ -211,9 +208,13 @@ def _like(energy, law, twins=1.0):
     return twins * energy.sum(axis=(-2, -1), keepdims=True) if law.mean.size == 1 else energy
 
 
-def _rows(energies, laws):
-    """Energies, means, second moments and slopes of both ways out."""
-    return energies, *([getattr(law, name) for law in laws] for name in ("mean", "second", "coin", "alpha"))
+def _flat(slices):
+    return np.concatenate([np.ravel(each) for each in slices])
+
+
+def _flat_laws(laws):
+    """Means, second moments and slopes of the cells of both ways out."""
+    return [_flat(getattr(law, name) for law in laws) for name in ("mean", "second", "coin", "alpha")]
 
 
 def plastic_scores(n, theta, alpha, estimator, rays, runs, seed):

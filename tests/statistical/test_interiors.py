@@ -93,7 +93,7 @@ def sweep(n, alpha, from_below):
 @SIDES
 @pytest.mark.parametrize("n", INDICES)
 def test_all_angles_and_widths_in_the_analog_walk(n, from_below):
-    """The width is told for each alpha, the coin by all. Chi-squares of 50 or 60 meetings: 5 sigma, false alarm 3e-5."""
+    """The width is told for each alpha, the coin by all. Chi-squares of some 50 meetings: 5 sigma, false alarm 3e-5."""
     every = []
     for alpha in ALPHAS:
         found = [analog_scores(meeting, rays, seed=31) for meeting, rays in sweep(n, alpha, from_below)]
