@@ -31,6 +31,7 @@ ROWS, COLUMNS = 90, 36
 # Relative changes by which slopes are found.
 _STEP = 1e-3
 _BUDGET = 1 << 22
+_NARROW = 0.05
 _RHO, _PLASTIC_ROWS = 0.8, 3
 
 
@@ -100,14 +101,16 @@ class Meeting:
     def laws(self):
         """Of what is reflected and of what is refracted, each on the cells that tell most of it.
 
-        Half cells resolve reflected lobes of any width, and refracted ones at normal incidence; refracted light is
-        one number in other half slices, for the integrals there would take their time.
+        Half cells resolve reflected lobes of any width, and refracted ones at normal incidence. Refracted light is one
+        number in other half slices, and narrow reflected light in classic ones: the integrals would take their time.
         """
         of = partial(law_of, alpha=self.alpha, n=self.n, theta=self.theta)
-        reflected = of(passes=False, parametrization=self.parametrization)
-        if self.parametrization == "half" and self.theta > 0.0:
-            return reflected, of(passes=True, parametrization="classic").total()
-        return reflected, of(passes=True, parametrization=self.parametrization)
+        half, classic = ({"parametrization": name} for name in ("half", "classic"))
+        if self.parametrization == "classic":
+            reflected = of(passes=False, **(half if self.alpha < _NARROW else classic))
+            return reflected.total() if self.alpha < _NARROW else reflected, of(passes=True, **classic)
+        refracted = of(passes=True, **(classic if self.theta > 0.0 else half))
+        return of(passes=False, **half), refracted.total() if self.theta > 0.0 else refracted
 
     def ways(self):
         """Ways out of what is reflected and of what is refracted."""
