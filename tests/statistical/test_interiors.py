@@ -86,8 +86,8 @@ def sweep(n, alpha, from_below):
     for theta in [*THETAS, NEAR_CRITICAL] if n < 1.0 else THETAS:
         for parametrization in ("half", "classic"):
             rays = 3_000_000 if theta > 80.0 or theta == NEAR_CRITICAL else 1_000_000
-            # Cells resolve the narrowest lobe less well.
-            rays *= 2 if alpha == min(ALPHAS) else 1
+            # Cells resolve narrow lobes less well.
+            rays *= 2 if alpha < 0.05 else 1
             yield Meeting(alpha, n, theta, from_below, parametrization), rays
 
 
