@@ -11,7 +11,7 @@ import numpy as np
 from scipy import stats
 
 # Of a right law fewer are rejected, of one that is off by `Score.smallest` fewer accepted.
-FALSE_ALARM = 1e-9
+FALSE_ALARM = 1e-10
 MISSED = 1e-3
 
 

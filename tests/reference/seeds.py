@@ -13,8 +13,8 @@ from goniosim.engine.session import Session
 
 from .scenes import make_scene
 
-# Sigmas beyond which a right error is with a probability of 1e-9.
-LIMIT = 6.11
+# Sigmas beyond which a right error is with a probability of 1e-10.
+LIMIT = 6.47
 
 
 def many_runs(layers, theta, estimator, rays, count, seed=1, rows=3, columns=4, parametrization="classic"):

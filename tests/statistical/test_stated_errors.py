@@ -1,8 +1,8 @@
 """Standard errors of every entry of the audit, of albedos and of cells, as wide as the scatter of many tiny runs.
 
 A stated error that is off by a factor q changes the chi-square of the scatter by 1 / q^2. Of 700 runs, half of the
-error and 1.3 times it fail with a probability of 99.9 %; of 300 half and 1.5 times it; of 6000, which are slow, 1.1
-times. A right error fails with 1e-9.
+error and 1.3 times it fail with a probability of 99.8 %; of 300 half and 1.5 times it; of 6000, which are slow, 1.1
+times. A right error fails with 1e-10.
 """
 
 import numpy as np
@@ -41,6 +41,7 @@ def assert_right(layers, estimator, runs):
     assert all(abs(sigmas) < LIMIT for _, sigmas in found.values()), found
 
 
+@pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize(
     ("estimator", "layers", "runs"),
     [("analog", SLAB, 700), ("split", SLAB, 700), ("operator", METAL, 300), ("connection", PLASTIC, 300)],
@@ -49,6 +50,7 @@ def test_audits_and_albedos(estimator, layers, runs):
     assert_right(layers, estimator, runs)
 
 
+@pytest.mark.false_alarm(1e-9)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("estimator", "layers"),
@@ -58,20 +60,22 @@ def test_small_errors_of_audits_and_albedos(estimator, layers):
     assert_right(layers, estimator, 6000)
 
 
+@pytest.mark.false_alarm(2e-10)
 @pytest.mark.slow
 @pytest.mark.parametrize(("estimator", "rays"), [("analog", 30_000), ("split", 4096)])
 def test_cells(estimator, rays):
     """Cells known to 20 %: the mean of the squared deviations over the stated ones is 1, by the scatter of 2500 runs.
 
-    1.02 times the error is 9 sigma or more, which is asserted; a right one fails with 1e-9.
+    1.02 times the error is 9 sigma or more, which is asserted; a right one fails with 1e-10.
     """
     components, _ = many_runs(SLAB, 40.0, estimator, rays, 2500, rows=9, columns=12)
     for name, each in components.items():
         mean, error = scatter_of_cells(each.energy[:, 0], each.stderr[:, 0], 0.2)
-        assert error < (1.0 - 1.02**-2.0) / 9.2, name
+        assert error < (1.0 - 1.02**-2.0) / 9.6, name
         assert abs(mean - 1.0) < LIMIT * error, (name, mean, error)
 
 
+@pytest.mark.false_alarm(1e-9)
 def test_the_scatter_of_cells_sees_two_percent():
     """Made-up runs: 108 cells that share a tenth of their variance; right, and 1.02 times too wide."""
     rng = np.random.default_rng(5)
