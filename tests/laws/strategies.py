@@ -27,7 +27,7 @@ ALIKE = [(0, 1, 2), (0, 1, 2), (0, 0, 1), (0, 1, 0), (0, 1, 1)]
 
 # Rays of a trial that tells whether a stack takes long, and events and stages that are enough for others.
 TRIED = 128
-TRIED_SPLIT = 16
+TRIED_SPLIT = 64
 MOST_EVENTS = 200_000
 MOST_STAGES = 2000
 
@@ -132,7 +132,7 @@ def lingers(scene):
             return True
         if workspace.state[STAGES] > MOST_STAGES:
             return True
-    return scene["simulation"]["estimator"] == "split" and _multiplies(plan)
+    return scene["simulation"]["estimator"] == "split" and _multiplies(make_plan(parse_scene(scene)))
 
 
 def _multiplies(plan):
