@@ -13,7 +13,8 @@ PAPER := out/paper
 # Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.
 WORKERS := -n auto --maxprocesses 4 --dist loadfile
 
-.PHONY: demo install lint test test-all test-cluster bench headline accuracy cluster-overhead honesty paper paper-report clean
+.PHONY: demo install lint test test-all test-cluster floor hard precision bench headline accuracy cluster-overhead
+.PHONY: honesty paper paper-report clean
 
 demo: $(STAMP)
 	$(BIN)/goniosim simulate configs/quickstart.yaml -o out/quickstart.h5
@@ -38,13 +39,24 @@ $(LINTERS): $(STAMP)
 test: $(STAMP)
 	$(BIN)/python -m pytest $(WORKERS) -m "not slow and not cluster"
 
+# Without dieharder, which is installed if need be and possible, the tests that need it fail and say so.
 test-all: $(STAMP)
+	-tests/hard/install-dieharder
 	$(BIN)/python -m pytest $(WORKERS) -m "not cluster"
+
+# Numbers of tests, below which the suite fails: to be written when tests were added or taken away.
+floor: $(STAMP)
+	$(BIN)/python -m pytest --write-floor
+	git diff --stat tests/floor.txt
 
 # On a Slurm of one node, which is installed if there is none, and started by the tests for themselves.
 test-cluster: $(STAMP)
 	tests/cluster/install
 	$(BIN)/python -m pytest tests/cluster -m cluster
+
+# The catalogue of hard cases, and docs/hard_cases.md; some minutes.
+hard: $(STAMP)
+	$(BIN)/goniosim hard -o docs/hard_cases.md
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/throughput.py
@@ -64,6 +76,10 @@ cluster-overhead: $(STAMP)
 # docs/honesty.txt: the scatter over 40 seeds against what error bars state; half an hour.
 honesty: $(STAMP)
 	$(BIN)/python -m benchmarks.honesty > docs/honesty.txt
+
+# docs/precision.md: every function beside the same mathematics in 40 digits; some minutes.
+precision: $(STAMP)
+	$(BIN)/python -m benchmarks.precision
 
 # Files that hold these rays or more are left alone; with more RAYS all are simulated anew. For fewer, remove the folder.
 paper: $(STAMP)

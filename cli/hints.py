@@ -19,6 +19,7 @@ COMMANDS = {
     "plot": "view show display draw figure figures picture image open",
     "compare": "evaluate eval diff benchmark rank error errors report",
     "models": "model",
+    "hard": "selftest selfcheck edge cases catalogue catalog stress",
     "init": "new create template example examples quickstart",
     "--version": "version",
     "--help": "help man usage",

@@ -281,6 +281,7 @@ def _stopped(job, result, signals):
 
 def _simulate(job, label, progress, signals, overwrite, anew, every):
     from goniosim.engine import simulate
+    from goniosim.report.simulation.target import far
     from goniosim.store import keeper
 
     left = {} if anew else _left(job, progress)
@@ -294,6 +295,7 @@ def _simulate(job, label, progress, signals, overwrite, anew, every):
 
     keep = keeper(job.path, overwrite, lambda error: progress.note(f"{label}: no checkpoint: {error}"))
     left["note"] = lambda line: progress.note(f"{job.path}: {line}")
+    left["tell"] = lambda outlook: progress.note(f"{label}: {far(job.scene.simulation, outlook)}")
     return simulate(job.scene, progress=report, stop=signals.event, checkpoint=keep, every=every, **left)
 
 

@@ -5,6 +5,7 @@ import click
 from .check import check
 from .compare import compare
 from .cost import cost
+from .hard import hard
 from .info import info
 from .init import init
 from .merge import merge
@@ -71,7 +72,7 @@ def main():
 COMMANDS = (
     *(init, simulate, check, cost, info, plot, compare, models),
     *(plan, submit, status, merge, warmup),
-    *(schema, versions),
+    *(hard, schema, versions),
 )
 for command in COMMANDS:
     main.add_command(command)

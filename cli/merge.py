@@ -65,7 +65,7 @@ def merge(ctx, sources, output, allow_missing, only, threads, overwrite, quiet):
             last = summary(result, path)
             rows.append(study.row(result, path))
             if result.target_reached is False and result.status == "complete":
-                missed.append(f"{path}: {target.shortfall(parse_scene(result.config_yaml).simulation)}")
+                missed.append(f"{path}: {target.shortfall(parse_scene(result.config_yaml).simulation, result)}")
     if not quiet and rows:
         say(study.study_text(rows) if len(rows) > 1 else last)
     for line in missed:

@@ -119,7 +119,7 @@ def simulate(
         for job, result in found:
             done.append(study.row(result, job.path) if many else summary(result, job.path))
             if result.target_reached is False and result.status == "complete":
-                missed.append(f"{job.path}: {target.shortfall(job.scene.simulation)}")
+                missed.append(f"{job.path}: {target.shortfall(job.scene.simulation, result)}")
             del result
     if done and not quiet:
         say(study.study_text(done) if many else done[0])

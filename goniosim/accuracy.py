@@ -19,6 +19,10 @@ BRIGHT = 0.95
 PERCENTILE = 95.0
 # Nine of ten normal numbers are smaller.
 NINE_OF_TEN = 1.2816
+# The s of a noise that falls as N^-s: of independent paths; and of a lattice, as far as one may hope.
+INDEPENDENT, FASTEST = 0.5, 1.0
+# Decimal places of a number of light paths, as many as are told.
+_MOST_PLACES = 250.0
 
 
 def relative_error(of, energy, stderr, total, projected_solid_angle, weights):
@@ -91,6 +95,53 @@ def _margin(of, stderr, size, noise):
     z2 = NINE_OF_TEN**2
     spread = np.sqrt(z2 * (a * (1.0 - b) ** 2 + b * (1.0 - a) ** 2 - z2 * a * b))
     return (((1.0 - a) * (1.0 - b) + spread) / ((1.0 - b) ** 2 - z2 * b)) ** 1.5
+
+
+def fall(paths, noise, independent):
+    """How a noise falls with the number N of light paths: the s of N^-s, by the last two checkpoints.
+
+    Parameters
+    ----------
+    paths, noise : sequence of float
+        At the checkpoints.
+    independent : bool
+        Whether the light paths are.
+
+    Returns
+    -------
+    float
+        Between `INDEPENDENT` and `FASTEST`: the noise of two checkpoints is not known well enough to believe more.
+    """
+    if independent or len(paths) < 2 or not paths[-1] > paths[-2] > 0.0 or not noise[-2] > noise[-1] > 0.0:
+        return INDEPENDENT
+    return min(max(math.log(noise[-2] / noise[-1]) / math.log(paths[-1] / paths[-2]), INDEPENDENT), FASTEST)
+
+
+def paths_for(target, error, off, paths, slope):
+    """Light paths that a target takes in all.
+
+    Parameters
+    ----------
+    target, error : float
+        What is asked for, and the `bound` that is held against it after so many ``paths``.
+    off : float
+        What nodes may be off by, which is part of both; relative, as they are.
+    slope : float
+        See `fall`.
+
+    Returns
+    -------
+    float
+        No less than ``paths``; infinite where what nodes may be off by leaves no room.
+    """
+    if error <= target:
+        return float(paths)
+    if off >= target:
+        return math.inf
+    # No squares, which would underflow.
+    there, asked = (math.log10(each - off) + math.log10(each + off) for each in (error, target))
+    places = 0.5 * (there - asked) / slope
+    return paths * 10.0 ** min(places, _MOST_PLACES)
 
 
 def norm(energy, projected_solid_angle):

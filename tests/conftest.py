@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+pytest_plugins = ("alarms", "suite")
+
 # By each of two processes, which take about as long.
 _COMPILE = """
 import sys

@@ -64,5 +64,8 @@ class _Calls:
         self._rays = self._earlier_rays + done_rays
         self._function(self._rays, self._total_rays)
 
+    def note(self, message: str) -> None:
+        """Leave out what is no number of rays."""
+
     def close(self) -> None:
         """Nothing more to call."""

@@ -115,7 +115,12 @@ def trace(scene: Scene, label: str, shown: Any, asked: Stop, **kept: Any) -> Res
             shown.begin(label, inherited=done_rays if {"resume", "prior"} & kept.keys() else 0)
         shown.update(done_rays, total_rays)
 
-    result: Result = engine.simulate(scene, progress=report, stop=asked, **kept)
+    def tell(outlook: Any) -> None:
+        from ..report.simulation.target import far
+
+        shown.note(f"{label}: {far(scene.simulation, outlook)}")
+
+    result: Result = engine.simulate(scene, progress=report, stop=asked, tell=tell, **kept)
     return result
 
 

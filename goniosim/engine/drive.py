@@ -200,10 +200,12 @@ class Limit:
     journal : Journal, optional
     begun : dict of object to ndarray, shape (M,), optional
         By run, light paths of each direction that are there before it.
+    ahead : goniosim.engine.outlook.Ahead, optional
+        Who tells what the accuracy still takes.
     """
 
-    def __init__(self, max_rays, max_seconds, journal=None, begun=None):
-        self._journal = journal or Journal()
+    def __init__(self, max_rays, max_seconds, journal=None, begun=None, ahead=None):
+        self._journal, self._ahead = journal or Journal(), ahead
         self.begun = begun or {}
         self._max_rays = math.inf if max_rays is None else max_rays
         self._end = math.inf if max_seconds is None else time.perf_counter() + max_seconds
@@ -220,10 +222,14 @@ class Limit:
         )
 
     def _leave_room(self, run, directions, number):
-        paths = run.rays_of_round(number)
+        paths, now = run.rays_of_round(number), time.perf_counter()
         # Of a run that only goes on, nobody has seen a round yet.
-        predicted = self._pace.get(run, 0.0) * len(directions) * paths
+        pace = self._pace.get(run, 0.0)
         there = self.begun.get(run, np.zeros(len(run.rays), int))
-        return time.perf_counter() + predicted <= self._end and all(
-            there[m] + run.rays[m] + paths <= self._max_rays for m in directions
+        held = {m: int(there[m]) + int(run.rays[m]) for m in directions}
+        look = None if self._ahead is None or pace == 0.0 else self._ahead.is_hopeless
+        if look and look(run, held, pace, self._end - now, self._max_rays):
+            return False
+        return now + pace * len(directions) * paths <= self._end and all(
+            rays + paths <= self._max_rays for rays in held.values()
         )

@@ -20,6 +20,7 @@ from .estimators.choose import ANALOG, AUTO, Choice, choose, next_best
 from .extended import MOST_OF_TARGET, Extended, gone_on
 from .gain import gains, in_words
 from .journal import Journal
+from .outlook import Ahead, needed
 from .packing import pack
 from .plan import Plan
 from .prior import Prior
@@ -28,7 +29,7 @@ from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 from .unit import child_key
 
 # Of `Session.state`, to be raised whenever one of before would not lead to the same bits.
-VERSION = [3, version_of("goniosim")]
+VERSION = [4, version_of("goniosim")]
 # Child of the seed's key, for a run that takes the place of another.
 BRANCH = 5
 
@@ -47,6 +48,8 @@ class Session:
         Called with the session after each piece of work, when its `state` may be kept.
     has_room : callable, optional
         Tells whether there is memory for what it leaves when it is stopped.
+    tell : callable, optional
+        Called with an `goniosim.engine.outlook.Outlook` where a target is far.
     resumed : dict, optional
         The `state` in which a session of the same simulation was interrupted.
     prior : goniosim.engine.prior.Prior, optional
@@ -73,6 +76,7 @@ class Session:
     audit: AnalogRun | None = None
     reached: bool | None = None
     has_room: object = None
+    tell: object = None
     left: bytes | None = None
     _ready: set = field(default_factory=set)
     _spent: dict = field(default_factory=dict)
@@ -149,7 +153,8 @@ class Session:
             self._shoot(asked.rays - least)
         else:
             seconds = None if asked.max_time is None else asked.max_time - before["seconds"]
-            limit = Limit(asked.max_rays, seconds, self._journal, there)
+            ahead = Ahead(self._needed, self.tell or (lambda outlook: None))
+            limit = Limit(asked.max_rays, seconds, self._journal, there, ahead)
             self.reached = self.drive.reach(self.runs, self._judge, self._instead, limit, self._do)
         if not self.finished and self.left is None:
             # Stopped between two pieces of work.
@@ -317,6 +322,9 @@ class Session:
         if assembly.worst_error(self.plan, run, direction, target.of) <= target.relative_error:
             return True
         return None if assembly.floor(self.plan, run, direction) >= target.relative_error else False
+
+    def _needed(self, run, direction):
+        return needed(self.plan, run, self._known(run), direction, self.simulation.target)
 
     def _instead(self, run):
         """The next best run for what one cannot reach, because of its nodes; it has a key of its own."""

@@ -29,6 +29,7 @@ def simulate(
     resume=None,
     prior=None,
     note=lambda line: None,
+    tell=None,
     **given,
 ):
     """Shoot rays at a scene and return its slices with their error bars.
@@ -54,6 +55,8 @@ def simulate(
         ``resume`` is of such a run, it knows its own.
     note : callable
         Called with a line if it cannot go on from ``prior``, and begins anew.
+    tell : callable, optional
+        Called with an `goniosim.engine.outlook.Outlook` where a target will take long, or longer than its limits.
     **given
         In the place of what the scene says: ``rays``, ``seed``, ``threads`` and the others of
         `goniosim.scene.with_arguments`. The result does not depend on ``threads``; the default
@@ -78,7 +81,7 @@ def simulate(
     require_memory(scene, 0 if prior is None else prior.size)
     with guarded():
         before = None if resume is None else checked_state(resume)
-        begin = partial(_simulate, scene, progress, stop or threading.Event(), checkpoint, every, before)
+        begin = partial(_simulate, scene, progress, stop or threading.Event(), checkpoint, every, tell, before)
         try:
             return begin(prior)
         except OtherEstimatorError as error:
@@ -125,7 +128,7 @@ def checked_state(state):
     return found
 
 
-def _simulate(scene, progress, stop, checkpoint, every, before, prior):
+def _simulate(scene, progress, stop, checkpoint, every, tell, before, prior):
     plan, threads = make_plan(scene), granted_threads(threads_of(scene))
     warm_up(scene)
     direct = integrate_direct(plan, threads, stop)
@@ -148,6 +151,7 @@ def _simulate(scene, progress, stop, checkpoint, every, before, prior):
     keeping = None if checkpoint is None else Checkpoints(every, keep)
     drive = Drive(threads, stop, progress_of(scene, progress))
     session = Session(plan, scene.simulation, drive, keeping, before, prior)
+    session.tell = tell
     session.has_room = lambda: has_room(needed.state + needed.result + needed.file + besides(session))
     session.run()
     if not session.traced and not (session.prior and session.finished):

@@ -105,15 +105,11 @@ def dielectric_transmittance(cos_i, eta):
 
 @scalar
 def scaled_transmittance(c, square, eta):
-    """1 - R of a dielectric at a normal of any length; arguments and g as in `reflects`."""
-    c, g, g2, m, sum_s, sum_p = _dielectric(c, square, eta)
-    # r_s and r_p times the same factor
+    """`dielectric_transmittance` at a normal of any length; arguments and g as in `reflects`."""
+    c, g, _, _, sum_s, sum_p = _dielectric(c, square, eta)
+    # Both polarisations of `dielectric_transmittance` over the same denominator; the length cancels.
     p = sum_s * sum_p
-    s_part = m * square * sum_p * sum_p
-    p_part = m * _brewster(c, g2, square, eta) * sum_s * sum_s
-    squared = (p * p) * (p * p)
-    reflectance = 0.5 * (s_part * s_part + p_part * p_part) / squared
-    return 0.0 if g2 <= 0.0 else max(0.0, 1.0 - reflectance), g
+    return min(1.0, 2.0 * c * g * (sum_p * sum_p + eta * eta * sum_s * sum_s) / (p * p)), g
 
 
 @scalar

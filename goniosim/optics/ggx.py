@@ -54,11 +54,12 @@ def sample_visible_facet(x, y, z, alpha, cosine, sine, u):
     """As `sample_visible_normal`, but the normal is left at a length that needs no division to find."""
     sx = alpha * x
     sy = alpha * y
-    square = sx * sx + sy * sy + z * z
-    length = math.sqrt(square)
+    flat = sx * sx + sy * sy
+    reach = math.sqrt(flat + z * z) + z
     # The height of the cap's point plus z, formed without subtracting: it is the z of the
     # half vector, whose smallness decides the tails of narrow distributions.
-    hz = (1.0 - u) * (length + z)
-    cap_z = hz - z
-    ring = math.sqrt(max(0.0, square - cap_z * cap_z))
+    hz = (1.0 - u) * reach
+    # The squared length less the squared height, (u reach) (flat / reach + hz): the facets that all but face the view,
+    # and those that it all but misses, keep their digits.
+    ring = math.sqrt(u * (flat + hz * reach))
     return alpha * (ring * cosine + sx), alpha * (ring * sine + sy), hz

@@ -7,13 +7,15 @@ direction ``ratio * w + k * m`` below, where ``ratio`` = n_above / n_below and k
 import math
 
 from .._jit import scalar
+from .elementary import fma
 
 
 @scalar
 def refracted_cosine(cosine, ratio):
     """Cosine below for the cosine above; 0 under total internal reflection.
 
-    Cosines keep the digits that a squared sine close to 1 has lost.
+    Cosines keep the digits that a squared sine close to 1 has lost. So does 1 - ratio^2 + (ratio cosine)^2 at the
+    critical angle, where it cancels: the two squares are taken with their rounding errors.
 
     Parameters
     ----------
@@ -22,8 +24,11 @@ def refracted_cosine(cosine, ratio):
     ratio : float
         Index above over index below.
     """
+    # Not ratio * ratio, which the compiler may contract with the difference below; that is exact where much cancels.
+    squared = fma(ratio, ratio, 0.0)
     scaled = ratio * cosine
-    return math.sqrt(max(0.0, (1.0 - ratio) * (1.0 + ratio) + scaled * scaled))
+    rest = 2.0 * scaled * fma(ratio, cosine, -scaled) - fma(ratio, ratio, -squared)
+    return math.sqrt(max(0.0, fma(scaled, scaled, 1.0 - squared) + rest))
 
 
 @scalar

@@ -12,6 +12,8 @@ from ..writing import printable
 LONGEST_VALUE = 200
 # Decimals of a number with its error.
 MOST_DECIMALS = 9
+# Seconds of a year, and years from which on days are no words.
+YEAR, MANY_YEARS = 365.25 * 86400.0, 3
 
 
 def with_error(value, stderr, decimals=5):
@@ -62,9 +64,11 @@ def rate(rays, per="s"):
 
 
 def duration(seconds):
-    """Format a time span with its two largest units: ``0.4 s``, ``3 min 20 s``, ``2 h 5 min``."""
+    """Format a time span with its two largest units: ``0.4 s``, ``3 min 20 s``, ``2 h 5 min``; or as ``40 years``."""
     if seconds < 10.0:
         return f"{seconds:.2g} s"
+    if seconds >= MANY_YEARS * YEAR:
+        return f"{seconds / YEAR:.2g} years".replace("e+0", "e").replace("e+", "e")
     parts, rest = [], round(seconds)
     for unit, length in (("d", 86400), ("h", 3600), ("min", 60), ("s", 1)):
         amount, rest = divmod(rest, length)

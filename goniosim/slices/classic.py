@@ -104,12 +104,13 @@ def geometry(rows, columns, theta):
     solid_angle, projected_solid_angle : ndarray, shape (rows, columns)
         In sr.
     """
-    edge = np.linspace(0.0, HALF_PI, rows + 1)
-    low, high = edge[:-1], edge[1:]
+    step = HALF_PI / rows
     d_phi = 2.0 * math.pi / columns
-    # Products instead of differences of cosines and squared sines: no digits are lost.
-    solid = 2.0 * np.sin(0.5 * (low + high)) * np.sin(0.5 * (high - low)) * d_phi
-    projected = 0.5 * np.sin(low + high) * np.sin(high - low) * d_phi
+    # Products instead of differences of cosines and squared sines, whole multiples of half a row, and the sine of what
+    # is left of a straight angle: no digits are lost, however narrow the rows.
+    middle = 2 * np.arange(rows) + 1
+    solid = 2.0 * np.sin(0.5 * step * middle) * math.sin(0.5 * step) * d_phi
+    projected = 0.5 * np.sin(step * np.minimum(middle, 2 * rows - middle)) * math.sin(step) * d_phi
     shape = (rows, columns)
     return (
         np.ones(shape, dtype=bool),

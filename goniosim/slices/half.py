@@ -137,8 +137,8 @@ def projected_row(u, light):
 def geometry(rows, columns, theta):
     """Validity and exact solid angles of all cells for light at polar angle ``theta``.
 
-    Closed form in phi_h, Gauss-Legendre in theta_h on intervals without kinks: exact to
-    rounding for cells above the horizon, to about 1e-12 sr for those that it cuts.
+    Closed form in phi_h, Gauss-Legendre in theta_h on intervals without kinks: exact to rounding, which where the
+    horizon spares next to nothing of a cell is that of the cell's edges (docs/precision.md).
 
     Returns
     -------
@@ -229,20 +229,40 @@ def _ring(t, start, end, theta):
     p = math.sin(theta) * np.sin(t)
     q = math.cos(theta) * np.cos(t)
     a = math.sin(theta) * np.sin(2.0 * t)
-    b = math.cos(theta) * np.cos(2.0 * t)
-    # Next to theta = 0 the quotient overflows to what the clipping turns into all or nothing.
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        cosine = np.where(a > 0.0, -b / a, np.where(b > 0.0, -1.0, 1.0))
-    phi_0 = np.arccos(np.clip(cosine, -1.0, 1.0))
+    # v_z at phi_h = 0 and at 180 deg; the first over minus the second is the squared tangent of phi_0 / 2.
+    highest = np.maximum(0.0, np.cos(2.0 * t - theta))
+    lowest = np.cos(2.0 * t + theta)
+    phi_0 = 2.0 * np.arctan2(np.sqrt(highest), np.sqrt(np.maximum(0.0, -lowest)))
+    lowest = np.maximum(0.0, lowest)
     solid = np.zeros_like(p)
     projected = np.zeros_like(p)
-    for low, high in ((0.0, phi_0), (2.0 * math.pi - phi_0, 2.0 * math.pi)):
+    # Only what reaches beyond 180 deg can meet the other half of the slice.
+    spans = [(0.0, phi_0), (2.0 * math.pi - phi_0, 2.0 * math.pi)]
+    for low, high in spans if end.max() > math.pi else spans[:1]:
         i = np.clip(start, low, high)
         j = np.clip(end, low, high)
         d = j - i
-        # sin(j) - sin(i) and sin(2j) - sin(2i), as products that keep the digits of narrow cells.
-        first = 2.0 * np.cos(0.5 * (i + j)) * np.sin(0.5 * d)
-        second = 2.0 * np.cos(i + j) * np.sin(d)
-        solid += 4.0 * (p * first + q * d)
-        projected += 4.0 * (p * a * (0.5 * d + 0.25 * second) + (p * b + q * a) * first + q * b * d)
+        middle = 0.5 * (i + j)
+        beside = np.minimum(middle, 2.0 * math.pi - middle)
+        cosine = np.cos(middle)
+        # l.h and v_z in the middle, and the integrals of what cos(phi_h) differs by from its value there, and of the
+        # square of that: differences of nearly equal numbers would leave few digits to what the horizon spares.
+        facet = p * cosine + q
+        height = 2.0 * a * np.sin(0.5 * (phi_0 + beside)) * np.sin(0.5 * (phi_0 - beside)) + lowest
+        once = _excess(0.5 * d)
+        # (d - sin(d)) / 2
+        twice = once + 2.0 * (0.5 * d - once) * np.sin(0.25 * d) ** 2
+        first = -2.0 * cosine * once
+        second = cosine * cosine * (4.0 * once - 2.0 * twice) + twice
+        solid += 4.0 * (facet * d + p * first)
+        projected += 4.0 * (facet * height * d + (facet * a + p * height) * first + p * a * second)
     return solid, projected
+
+
+def _excess(x):
+    """``x - sin(x)`` for x >= 0, to its last digits."""
+    z = x * x
+    series = np.ones_like(x)
+    for n in range(18, 3, -2):
+        series = 1.0 - z / (n * (n + 1)) * series
+    return np.where(x < 1.0, x * z / 6.0 * series, x - np.sin(x))

@@ -49,6 +49,7 @@ def test_a_window_pane_has_its_exact_energies(theta, options):
         assert not prepared.evaluate(*SOMEWHERE).any()
 
 
+@pytest.mark.false_alarm(2e-5, seeds=(1, 101))
 @pytest.mark.parametrize("parametrization", ["classic", "half"])
 @pytest.mark.parametrize(
     "layers",
@@ -59,13 +60,13 @@ def test_a_window_pane_has_its_exact_energies(theta, options):
     ],
     ids=["pane", "into water", "metal"],
 )
-def test_the_comparison_finds_no_error_where_the_model_is_exact(layers, parametrization):
+def test_the_comparison_finds_no_error_where_the_model_is_exact(layers, parametrization, seed):
     """All energy in the very cell of the simulation, and right within 5 standard errors.
 
-    About 100 deviations in 6 cases, few of them independent: false alarm below 6e-5.
+    Up to 36 deviations of a case, few of them independent: false alarm below 2e-5.
     """
     scene = make_scene(layers, [0.0, 20.5, 60.0, 80.0], parametrization, rays=50_000)
-    (material,) = goniosim.compare(goniosim.simulate(scene), models=list(AFTER_BELCOUR)).materials
+    (material,) = goniosim.compare(goniosim.simulate(scene, seed=seed), models=list(AFTER_BELCOUR)).materials
     assert material.compared
     for found in material.compared:
         label, component = found.variant.label, found.component

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 from types import SimpleNamespace
 
@@ -13,10 +14,8 @@ from goniosim import engine
 from goniosim.store import Standing, open_result, write_result
 
 TIMES = "1% --max-time 10m"
-MISSED = (
-    "goniosim: small.h5: the target of 1 % of slice was not reached with at most 10 min; "
-    "the result is kept: raise max_time, or ask for less"
-)
+KEPT = "; the result is kept: raise max_time, or ask for less"
+MISSED = "goniosim: small.h5: the target of 1 % of slice was not reached with at most 10 min"
 
 
 @pytest.fixture
@@ -92,7 +91,10 @@ def lines_of(err):
 def test_a_target_that_is_missed_is_9_and_the_result_is_kept(goniosim, folder, aimed):
     aimed["missed"].add("small")
     code, out, err = call(goniosim, f"--target {TIMES}")
-    assert (code, lines_of(err)) == (9, [MISSED])
+    (line,) = lines_of(err)
+    assert (code, line.removeprefix(MISSED).endswith(KEPT)) == (9, True)
+    takes = r" \(it is at \d+ %, and takes about \S+ rays per direction and \S+ \w+ in all\)"
+    assert re.fullmatch(takes, line[len(MISSED) : -len(KEPT)])
     assert "target: 1 % of slice, at most 10 min: not reached" in out
     result = open_result(folder / "small.h5")
     assert (result.status, result.target_reached) == ("complete", False)
@@ -103,9 +105,9 @@ def test_a_target_that_is_missed_is_9_and_the_result_is_kept(goniosim, folder, a
     before = (folder / "small.h5").read_bytes()
     for line in (TIMES, "1% --max-time 5m --max-rays 1e6"):
         code, out, err = call(goniosim, f"--target {line}")
-        assert (code, out, err.splitlines()[-1]) == (9, "", MISSED)
+        assert (code, out, err.splitlines()[-1]) == (9, "", MISSED + KEPT)
         assert "stays as it is: it holds 1000 rays per direction of this scene, by a target of 1 % of slice" in err
-    assert call(goniosim, f"--target {TIMES} -q") == (9, "", f"{MISSED}\n")
+    assert call(goniosim, f"--target {TIMES} -q") == (9, "", f"{MISSED}{KEPT}\n")
     assert (len(aimed["asked"]), (folder / "small.h5").read_bytes()) == (1, before)
     # Whoever asks for these rays has them.
     assert call(goniosim, "--rays 1000 -q") == (0, "", "")
@@ -248,3 +250,28 @@ def test_a_miss_of_the_operator_names_what_limits_it(goniosim, folder, aimed):
     code, _, err = call(goniosim, "--target 1% --estimator operator")
     said = "ask for less, or leave the estimator to auto: what nodes may be off by limits this one"
     assert code == 9 and err.splitlines()[-1].endswith(f"the result is kept: {said}")
+
+
+def test_a_target_that_nobody_lives_to_see_ends_with_a_word(goniosim, folder):
+    """It would go on for ever, since nothing limits it; instead it says so after two rounds, and ends."""
+    code, out, err = call(goniosim, "--target 1e-12 --estimator split", "scene.yaml")
+    told, missed = lines_of(err)
+    takes = r"takes about \S+ rays per direction and \S+ years"
+    # Two rounds.
+    at = r"small: reflection/internal is at \S+ % after 3.932e5 rays per direction"
+    assert re.search(f"{at}; the target of 1e-10 % of slice {takes} more$", told)
+    assert re.search(rf"not reached \(it is at \S+ %, and {takes} in all\); the result is kept: ask for less$", missed)
+    assert (code, open_result(folder / "small.h5").target_reached) == (9, False)
+    # Nor is it tried again.
+    code, _, err = call(goniosim, "--target 1e-12 --estimator split", "scene.yaml")
+    assert code == 9 and "stays as it is" in err
+
+
+def test_a_target_beyond_its_limits_is_told_early(goniosim, folder):
+    code, _, err = call(goniosim, "--target 1e-5 --max-rays 1e6 --estimator split", "scene.yaml")
+    told, missed = lines_of(err)
+    assert code == 9 and told.endswith("more, beyond the limits: at most 1e6 rays per direction")
+    assert missed.endswith("the result is kept: raise max_rays, or ask for less")
+    # Where it is near, there is nothing to say.
+    code, _, err = call(goniosim, "--target 5% --max-rays 1e8 --estimator split", "scene.yaml")
+    assert (code, lines_of(err)[1:]) == (0, [])

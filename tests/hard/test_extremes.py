@@ -114,15 +114,16 @@ def test_nearly_equal_indices_do_not_deflect():
     assert (through[:3] > 0.9).all()
 
 
+@pytest.mark.false_alarm(5.2e-6, seeds=(3, 103))
 @pytest.mark.parametrize("theta", [1e-6, 1e-3])
-def test_almost_normal_incidence_is_normal_incidence(theta):
+def test_almost_normal_incidence_is_normal_incidence(theta, seed):
     """No jump between theta = 0, where the azimuth is undefined, and just beside it.
 
     Differences of two runs of 2e6 paths each at 5 sigma, largest of 9 rows: false alarm 5e-6.
     """
     layers = [dielectric(1.5, 0.2), medium(0.1), conductor(1.45, 1.0, 0.2)]
     scene = make_scene(layers, [0, theta], rows=9, columns=1)
-    internal = simulate(scene, rays=2_000_000, seed=3, estimator="analog").components["reflection/internal"]
+    internal = simulate(scene, rays=2_000_000, seed=seed, estimator="analog").components["reflection/internal"]
     difference = internal.energy[0, 0] - internal.energy[1, 0]
     error = np.hypot(internal.stderr[0, 0], internal.stderr[1, 0])
     assert (np.abs(difference) < 5.0 * error).all()

@@ -103,12 +103,12 @@ def direct_cells(top, density, thetas, parametrization, rows=90, columns=360):
     return direct.energy[:, 0], direct.stderr[:, 0], np.array(exact)
 
 
-def many_seeds(layers, theta, component, parametrization, rays, seeds, rows=30, columns=60):
+def many_seeds(layers, theta, component, parametrization, rays, seeds, rows=30, columns=60, first=0):
     """Energy, standard error and hits of one component for many seeds, seeds first."""
     scene = make_scene(layers, theta, parametrization, rows, columns, rays=rays, estimator="analog")
     side = DOWN if component == "transmission" else UP
     energy, stderr, hits = [], [], []
-    for seed in range(seeds):
+    for seed in range(first, first + seeds):
         (found,), position = _estimates(scene, side, seed)
         energy.append(found.energy[position])
         stderr.append(found.stderr[position])
@@ -137,7 +137,7 @@ def exchange_deviations(layers, component, thetas, rays, seed, rows=90, columns=
     return np.concatenate(z)
 
 
-def tracer_deviations(layers, theta, parametrization, rays, tracer_rays, orders=3, rows=9, columns=18):
+def tracer_deviations(layers, theta, parametrization, rays, tracer_rays, orders=3, rows=9, columns=18, seed=3):
     """Standardised differences between the engine and the reference tracer.
 
     Returns
@@ -148,8 +148,8 @@ def tracer_deviations(layers, theta, parametrization, rays, tracer_rays, orders=
     result : goniosim.result.Result
     """
     scene = make_scene(layers, theta, parametrization, rows, columns, orders=orders)
-    result = simulate(scene, rays=rays, seed=3, estimator="analog")
-    slow = trace(stack_from_scene(scene), theta, tracer_rays, 4, rows, columns, parametrization, orders + 1)
+    result = simulate(scene, rays=rays, seed=seed, estimator="analog")
+    slow = trace(stack_from_scene(scene), theta, tracer_rays, seed + 1, rows, columns, parametrization, orders + 1)
     # Both follow the same law, and the engine's many rays know its width better.
     widened = np.sqrt(1.0 + rays / tracer_rays)
     deviations = {}

@@ -48,12 +48,12 @@ def blocks(slices, rows, columns):
     return slices.reshape(*shape, r // rows, rows, k // columns, columns).sum(axis=(-3, -1))
 
 
-def analog_blocks(scene, plan, side, rows, columns, runs=1):
+def analog_blocks(scene, plan, side, rows, columns, runs=1, seed=1000):
     """Block sums of the folded slices by pooled analog runs, and their variances; shape (D, ...)."""
     name = COMPONENT_OF[side]
     mean = variance = 0.0
     for run in range(runs):
-        found = simulate(scene, seed=1000 + run, estimator="analog").components[name]
+        found = simulate(scene, seed=seed + run, estimator="analog").components[name]
         mean = mean + blocks(folded(plan, found.energy[0][plan.distinct]), rows, columns) / runs
         # Both of a pair are hit by different paths.
         squares = folded(plan, found.stderr[0][plan.distinct] ** 2) * 0.5

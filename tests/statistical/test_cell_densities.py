@@ -1,7 +1,7 @@
 """Every cell of a slice against the integrated density: sampled and integrated light.
 
-Each chi-square is allowed 4 sigma on either side: a right engine fails one with
-probability 6.3e-5, and any of the 164 here (cells and blocks of cells) with about 1 %.
+Each chi-square is allowed 4 sigma on either side: a right engine fails one with probability 6.3e-5, and any of the ten
+or eight of a test (cells and blocks of cells, at each angle) with ten or eight times as much. Three seeds must agree.
 """
 
 import itertools
@@ -24,22 +24,25 @@ def assert_within_four_sigma(chi_squares):
         assert abs(found.sigmas) < 4, f"{chi_squares}"
 
 
+@pytest.mark.false_alarm(6.3e-4, seeds=(11, 111, 211))
 @pytest.mark.parametrize("parametrization", SLICES)
-def test_smooth_plastic(parametrization):
-    assert_within_four_sigma(checks.plastic_cells(THETAS, parametrization, RAYS, seed=11))
+def test_smooth_plastic(parametrization, seed):
+    assert_within_four_sigma(checks.plastic_cells(THETAS, parametrization, RAYS, seed))
 
 
+@pytest.mark.false_alarm(6.3e-4, seeds=(12, 112, 212))
 @pytest.mark.parametrize("alpha", ALPHAS)
 @pytest.mark.parametrize("parametrization", SLICES)
-def test_rough_conductor(parametrization, alpha):
-    assert_within_four_sigma(checks.conductor_cells(alpha, THETAS, parametrization, RAYS, seed=12))
+def test_rough_conductor(parametrization, alpha, seed):
+    assert_within_four_sigma(checks.conductor_cells(alpha, THETAS, parametrization, RAYS, seed))
 
 
+@pytest.mark.false_alarm(5.1e-4, seeds=(13, 113, 213))
 @pytest.mark.parametrize("eta", [1.5, 1.0 / 1.5])
 @pytest.mark.parametrize("alpha", ALPHAS)
-def test_transmission_of_a_rough_interface(alpha, eta):
+def test_transmission_of_a_rough_interface(alpha, eta, seed):
     """Refraction into a half-space, from both sides of the interface."""
-    assert_within_four_sigma(checks.transmission_cells(alpha, eta, [0, 30, 60, 85], RAYS, seed=13))
+    assert_within_four_sigma(checks.transmission_cells(alpha, eta, [0, 30, 60, 85], RAYS, seed))
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)

@@ -31,9 +31,9 @@ CASES = {
 QUICK = [case if case in ("analog", "split") else pytest.param(case, marks=pytest.mark.slow) for case in CASES]
 
 
-def scene_of(case):
+def scene_of(case, seed=1):
     layers, orders, asked = CASES[case]
-    return with_arguments(make_scene(layers, [10.0, 70.0], rows=9, columns=36, **orders), asked)
+    return with_arguments(make_scene(layers, [10.0, 70.0], rows=9, columns=36, seed=seed, **orders), asked)
 
 
 @pytest.fixture(scope="module")
@@ -41,16 +41,16 @@ def first():
     """A finished run of a case; the function remembers it."""
     found = {}
 
-    def of(case):
-        if case not in found:
-            found[case] = simulate(scene_of(case), threads=1)
-        return found[case]
+    def of(case, seed=1):
+        if (case, seed) not in found:
+            found[case, seed] = simulate(scene_of(case, seed), threads=1)
+        return found[case, seed]
 
     return of
 
 
-def extended(case, result, factor=3, **given):
-    scene = scene_of(case)
+def extended(case, result, factor=3, seed=1, **given):
+    scene = scene_of(case, seed)
     return simulate(scene, rays=factor * scene.simulation.rays, prior=prior_of(scene, result), **given)
 
 
@@ -150,16 +150,17 @@ def test_where_nothing_but_the_direct_reflection_leaves():
     assert again.target_reached and again.rays.tolist() == [5000, 5000] and simulate(aimed).target_reached
 
 
+@pytest.mark.false_alarm(2e-5, seeds=(1, 101))
 @pytest.mark.parametrize("case", ["analog", "split"])
-def test_a_direction_without_rays_has_what_the_run_adds(first, case):
-    before = copy.deepcopy(first(case))
+def test_a_direction_without_rays_has_what_the_run_adds(first, case, seed):
+    """5 sigma on 3 numbers, with errors from 32 replicates or 64 parts: a false alarm in 2e-5 of the cases."""
+    before = copy.deepcopy(first(case, seed))
     before.status, before.rays[1], before.audit.rays[1] = "partial", 0, 0
     for _, part in parts_of(before):
         part.paths[1] = 0
-    found, plain = extended(case, before), first(case)
+    found, plain = extended(case, before, seed=seed), first(case, seed)
     missing = 3 * scene_of(case).simulation.rays
-    assert found.rays[0] == first(case).rays[0] + found.rays[1] and missing <= found.rays[1] < 1.1 * missing
-    # 5 sigma on 3 numbers: a false alarm in 1e-5 of the cases.
+    assert found.rays[0] == plain.rays[0] + found.rays[1] and missing <= found.rays[1] < 1.1 * missing
     (value, error), (other, others_error) = ((v[1], e[1]) for v, e in (found.albedo(), plain.albedo()))
     assert (np.abs(value - other) < 5.0 * np.hypot(error, others_error)).all()
 
@@ -221,8 +222,9 @@ def test_a_target_that_takes_another_estimator_begins_anew():
 
 
 @pytest.mark.slow
+@pytest.mark.false_alarm(2e-5, seeds=(0, 1000))
 @pytest.mark.parametrize("estimator", ["analog", "split"])
-def test_error_bars_hold(estimator):
+def test_error_bars_hold(estimator, seed):
     """Scatter over 200 runs, extended once, against the errors that they state.
 
     The mean of 200 squares scatters by a tenth, where they are normal; in sums over cells, and in the cells that hold
@@ -230,8 +232,8 @@ def test_error_bars_hold(estimator):
     """
     scene = with_arguments(make_scene(METAL, [30.0], rows=3, columns=8), {"estimator": estimator, "rays": 1500})
     albedos, cells = [], []
-    for seed in range(200):
-        own = with_arguments(scene, {"seed": seed})
+    for number in range(200):
+        own = with_arguments(scene, {"seed": seed + number})
         both = simulate(own, rays=4000, threads=1, prior=prior_of(own, simulate(own, threads=1)))
         component = both.components["reflection/internal"]
         brightest = np.unravel_index(component.energy[0, 0].argmax(), component.energy[0, 0].shape)

@@ -10,7 +10,7 @@ from goniosim.engine.plan import make_plan
 from reference.operators import deviations, energies
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.false_alarm(7e-3, seeds=(0, 100, 200, 300))]
 
 RUNS = 4
 RAYS = 5_000_000
@@ -61,19 +61,19 @@ EDGES = {
 }
 
 
-def _check(layers, side, parametrization, theta, least):
+def _check(layers, side, parametrization, theta, least, seed):
     """Blocks of 6 by 12 cells that hold ``least`` of the energy and 400 analog rays.
 
     |z| < 5.5 for at most 700 blocks in 3 channels, totals within 4.5: false-alarm rate 1e-4 a case, t(31) included, as
-    the analog run's scatter dominates; rms of z below 1.35, and 1.35 is 3 sigma and more for 25 blocks alike.
+    the analog run's scatter dominates; rms of z below 1.35, which 25 blocks exceed with a probability of 7e-3 at most.
     """
     scene = make_scene(layers, theta, parametrization)
     made = Operator(make_plan(scene), (side,))
     made.prepare()
     pool = [
-        simulate(scene, rays=RAYS, seed=seed, estimator="analog").components[COMPONENT[side]] for seed in range(RUNS)
+        simulate(scene, rays=RAYS, seed=seed + n, estimator="analog").components[COMPONENT[side]] for n in range(RUNS)
     ]
-    slices = energies(made, 4096, 32, seed=7)
+    slices = energies(made, 4096, 32, seed=seed + 7)
     assert np.isfinite(slices).all()
     assert slices.mean(axis=0).min() > -1e-7 * slices.mean(axis=0).sum(axis=(-2, -1)).max()
     z, totals = deviations(made, pool, slices, RAYS, least=least, hits=400.0, block=(6, 12))
@@ -84,17 +84,17 @@ def _check(layers, side, parametrization, theta, least):
 
 @pytest.mark.parametrize("theta", [0.0, 30.0, 60.0, 75.0, 85.0])
 @pytest.mark.parametrize("name", STUDY)
-def test_study(name, theta):
+def test_study(name, theta, seed):
     """Nearly matched metals reflect by rare facets: analog bars are honest only in bright blocks."""
-    _check(*STUDY[name], theta, 1e-3 if "metal" in name else 1e-5)
+    _check(*STUDY[name], theta, 1e-3 if "metal" in name else 1e-5, seed)
 
 
 @pytest.mark.parametrize("theta", [0.0, 60.0, 89.9])
 @pytest.mark.parametrize("name", EDGES)
-def test_edges(name, theta):
+def test_edges(name, theta, seed):
     """As above. Beyond its critical angle of 48.6 degrees only rare facets of a thin top let light in: all blocks
     then deviate together, by seed up or down, and the rms of z says nothing.
     """
     if "thin" in name and theta > 48.0:
         theta = 45.0
-    _check(*EDGES[name], theta, 1e-3)
+    _check(*EDGES[name], theta, 1e-3, seed)

@@ -14,12 +14,13 @@ METAL = [dielectric(1.5, 0.2), medium(0.2), conductor(1.45, 1.0, 0.2)]
 SLAB = [dielectric(1.5, 0.2), medium(0.2), dielectric(1.0, 0.2)]
 
 
+@pytest.mark.false_alarm(3e-4, seeds=(21, 121, 221))
 @pytest.mark.parametrize(
     "layers, component",
     [(METAL, "reflection/internal"), (SLAB, "reflection/internal"), (SLAB, "transmission")],
     ids=["metal", "slab above", "slab below"],
 )
-def test_exchange_of_light_and_viewer(layers, component):
+def test_exchange_of_light_and_viewer(layers, component, seed):
     """f(l, v) = f(v, l) for all pairs of six angles and all azimuths between them.
 
     A row of 1 degree averages over theta_v where the light is exact: with lobes
@@ -28,7 +29,7 @@ def test_exchange_of_light_and_viewer(layers, component):
     reciprocal as well. Sum of squares within 4 sigma, largest of up to 360
     deviations below 5: a false alarm in 3e-4 of the cases.
     """
-    z = exchange_deviations(layers, component, THETAS, RAYS, seed=21)
+    z = exchange_deviations(layers, component, THETAS, RAYS, seed)
     assert z.size > 100
     assert np.abs(z).max() < 5
     assert stats.norm.sf(4) < stats.chi2.sf((z**2).sum(), z.size) < stats.norm.cdf(4)

@@ -17,9 +17,10 @@ OPAQUE = [
 TRANSPARENT = [*OPAQUE[:-1], dielectric(1.0, 0.3)]
 
 
+@pytest.mark.false_alarm(1.3e-3, seeds=(3, 103, 203))
 @pytest.mark.parametrize("parametrization", ["classic", "half"])
 @pytest.mark.parametrize("layers", [OPAQUE, TRANSPARENT], ids=["opaque", "transparent"])
-def test_deep_stack(layers, parametrization):
+def test_deep_stack(layers, parametrization, seed):
     """Every component, order and channel, in every cell with 100 hits, at 5 sigma.
 
     At most 162 cells, 4 parts and 3 strongly correlated channels for 3
@@ -27,7 +28,7 @@ def test_deep_stack(layers, parametrization):
     1.2e-3 of the cases. Their mean square, over at least 50 cells, must be
     1 within 60 %: 4 sigma even if all parts and channels were copies of one.
     """
-    deviations, result = tracer_deviations(layers, 40, parametrization, 4_000_000, 300_000)
+    deviations, result = tracer_deviations(layers, 40, parametrization, 4_000_000, 300_000, seed=seed)
     assert np.abs(result.audit.residual).max() < 1e-12
     assert ("transmission" in deviations) == (layers is TRANSPARENT)
     assert "reflection/internal/order_2" in deviations

@@ -1,5 +1,6 @@
 """Replicates against independent paths: the same means, errors that are right, the same bits on any threads."""
 
+import functools
 import threading
 
 import numpy as np
@@ -45,11 +46,19 @@ def plan_of(columns, orders=None):
 
 
 # An odd number of columns has no halves.
-@pytest.fixture(scope="module", params=[(36, None), (37, 2)], ids=["folded", "odd, orders"])
-def pair(request):
+PAIRS = {"folded": (36, None), "odd, orders": (37, 2)}
+
+
+@functools.cache
+def pair_of(name, seed=1):
     """The same slab by independent paths and by replicates."""
-    plan = plan_of(*request.param)
-    return plan, shot(AnalogRun(plan, 1, (UP, DOWN))), shot(ReplicatedRun(plan, Plain(plan), (UP, DOWN), 1))
+    plan = plan_of(*PAIRS[name])
+    return plan, shot(AnalogRun(plan, seed, (UP, DOWN))), shot(ReplicatedRun(plan, Plain(plan), (UP, DOWN), seed))
+
+
+@pytest.fixture(params=PAIRS)
+def pair(request):
+    return pair_of(request.param)
 
 
 def views(plan):
@@ -57,8 +66,11 @@ def views(plan):
     return [(side, order) for side in (UP, DOWN) for order in (None, *range(orders[side]))]
 
 
-def test_means_and_errors_agree(pair):
-    plan, analog, run = pair
+@pytest.mark.false_alarm(1.3e-3, seeds=(1, 101, 201))
+@pytest.mark.parametrize("name", PAIRS)
+def test_means_and_errors_agree(name, seed):
+    """Of up to 14 views the rms of deviations to 4 sigma, and three totals to 4.5: a false alarm in 1.3e-3."""
+    plan, analog, run = pair_of(name, seed)
     for side, order in views(plan):
         for m in range(2):
             one, other = analog.estimate(side, m, order), run.estimate(side, m, order)
@@ -143,7 +155,9 @@ def test_a_stop_keeps_whole_replicates():
     assert len(run.spending.checkpoints[0]) == 1 and run.estimate(DOWN, 0).energy.sum() > 0.3
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_a_few_paths_without_slices_tell_the_noise_of_independent_paths(pair):
+    """To 10 %: over many seeds they are 5 % high at the most, and scatter by 0.5 %."""
     plan, analog, run = pair
     short = shot(AnalogRun(plan.in_one_cell(), 3), rays=50_000)
     for side in (UP, DOWN):

@@ -23,16 +23,17 @@ DARK = {
 }
 
 
-def many(layers, component, theta=30.0, rows=3, columns=4):
+def many(layers, component, theta=30.0, rows=3, columns=4, first=1):
     scene = make_scene(layers, theta, rows=rows, columns=columns)
-    found = [simulate(scene, rays=RAYS, seed=seed, estimator="analog") for seed in range(1, SEEDS + 1)]
+    found = [simulate(scene, rays=RAYS, seed=first + n, estimator="analog") for n in range(SEEDS)]
     parts = [result.components[component] for result in found]
     energy, stderr = (np.array([getattr(part, name)[0, 0] for part in parts]) for name in ("energy", "stderr"))
     return energy, stderr, np.array([result.audit.energy["lost_roulette"][0, 0] for result in found])
 
 
+@pytest.mark.false_alarm(4e-4, seeds=(1, 1001, 2001))
 @pytest.mark.parametrize("name", DARK)
-def test_the_error_bars_of_dark_stacks(name):
+def test_the_error_bars_of_dark_stacks(name, seed):
     """They are about those of a bright stack, honest, and roulette takes as much as it gives.
 
     A ray in ten or more reaches the component, so that with equal weights its energy is known to sqrt(10 / 40000) =
@@ -43,7 +44,7 @@ def test_the_error_bars_of_dark_stacks(name):
     has a chance of 2e-4 (Poisson).
     """
     layers, component = DARK[name]
-    energy, stderr, lost = many(layers, component)
+    energy, stderr, lost = many(layers, component, first=seed)
     total = energy.sum(axis=(1, 2))
     assert total.mean() < 1e-3
     assert total.std(ddof=1) < 0.032 * total.mean()
@@ -54,19 +55,21 @@ def test_the_error_bars_of_dark_stacks(name):
     assert abs(lost.mean()) <= 4.5 * lost.std(ddof=1) / SEEDS**0.5 or 0.0 < missing < 8.5
 
 
-def test_a_dark_plastic_agrees_with_its_closed_form():
+@pytest.mark.false_alarm(1.7e-4, seeds=(1, 1001, 2001))
+def test_a_dark_plastic_agrees_with_its_closed_form(seed):
     """24 seeds at 4.5 sigma of t with 23 degrees of freedom: false-alarm rate 2e-4."""
-    energy, _, _ = many(DARK["plastic, tau 6"][0], "reflection/internal")
+    energy, _, _ = many(DARK["plastic, tau 6"][0], "reflection/internal", first=seed)
     total = energy.sum(axis=(1, 2))
     exact = plastic_albedo(math.cos(math.radians(30.0)), 1.5, 0.5, 6.0)
     assert abs(total.mean() - exact) < 4.5 * total.std(ddof=1) / SEEDS**0.5
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_light_from_a_dark_base_is_not_sacrificed_to_a_bright_interface_above_it():
     """A clear coat over a darkly coated base: one ray in 250 is a million times as bright as the others.
 
     Away from the mirror direction only the base is seen. With a tenth of the rays there its energy would be known to
-    sqrt(10 / 40000) = 1.6 % if all were equal; twice that at most.
+    sqrt(10 / 40000) = 1.6 % if all were equal; twice that at most. Over many seeds it is 0.99 %.
     """
     layers = [dielectric(1.5), dielectric(1.7), medium(6.0), lambert(0.5)]
     energy, stderr, _ = many(layers, "reflection/internal", rows=6, columns=6)

@@ -33,18 +33,19 @@ STACKS = {
 }
 
 
+@pytest.mark.false_alarm(2e-4, seeds=(1, 101, 201))
 @pytest.mark.parametrize("name", STACKS)
-def test_blocks_agree_with_the_analog_engine(name):
+def test_blocks_agree_with_the_analog_engine(name, seed):
     """Blocks of 3 x 3 coarse cells known to 10 %: largest |z| of up to 48 in each case below 5.2, of totals 4.8.
 
-    With t of 31 degrees of freedom a false alarm in 2e-3 of the runs of this test over all its cases.
+    With t of 31 degrees of freedom a false alarm in 2e-4 of the runs of each, as the analog run's scatter dominates.
     """
     layers, theta, parametrization = STACKS[name]
     scene = make_scene(layers, theta, parametrization, 12, 24, rays=150_000)
     plan, split = prepared(Split, scene)
-    found = make_replicates(plan, split, 512, seed=1)
+    found = make_replicates(plan, split, 512, seed)
     for number, side in enumerate(sides_of(plan)):
-        mean, variance = analog_blocks(scene, plan, side, 3, 3)
+        mean, variance = analog_blocks(scene, plan, side, 3, 3, seed=999 + seed)
         own = blocks(found[:, number], 3, 3)
         z = _z(own, mean, variance)
         assert np.abs(z[np.sqrt(variance) < 0.1 * mean]).max() < 5.2
@@ -76,20 +77,21 @@ NARROW = {
 
 
 @pytest.mark.slow
+@pytest.mark.false_alarm(2e-2, seeds=(2, 102, 202, 302))
 @pytest.mark.parametrize("name", STACKS | NARROW)
-def test_fine_blocks_agree_with_pooled_analog_runs(name):
+def test_fine_blocks_agree_with_pooled_analog_runs(name, seed):
     """Blocks of 6 x 12 cells with 1e-4 of the energy: rms z below 1.15 or 4 sigma, none above 5; totals below 4.
 
-    Seeds are fixed; the limits are 4 sigma for the rms of independent blocks. Channels that share paths are not, and
-    scatter more.
+    The limits are 4 sigma for the rms of independent blocks; three channels that share paths make it 2.3 sigma, which
+    both ways out exceed with a probability of 2e-2. All the rest is rarer.
     """
     layers, theta, parametrization = (STACKS | NARROW)[name]
     scene = make_scene(layers, theta, parametrization, rays=4_000_000)
     plan, split = prepared(Split, scene)
     # Many of both: a bias would hide behind their noise.
-    found = make_replicates(plan, split, 16_384, seed=2, count=128)
+    found = make_replicates(plan, split, 16_384, seed, count=128)
     for number, side in enumerate(sides_of(plan)):
-        mean, variance = analog_blocks(scene, plan, side, 6, 12, runs=16)
+        mean, variance = analog_blocks(scene, plan, side, 6, 12, runs=16, seed=998 + seed)
         own = blocks(found[:, number], 6, 12)
         bright = mean > 1e-4 * mean.sum(axis=(-1, -2), keepdims=True)
         z = _z(own, mean, variance)[bright]
@@ -118,21 +120,23 @@ HONEST = {
 
 
 @pytest.mark.slow
+@pytest.mark.false_alarm(2e-2, seeds=(100, 1100, 2100, 3100))
 @pytest.mark.parametrize("size", [2048, 8192])
 @pytest.mark.parametrize("name", HONEST)
-def test_the_scatter_of_seeds_is_what_is_stated(name, size):
+def test_the_scatter_of_seeds_is_what_is_stated(name, size, seed):
     """Seeds of 32 replicates: true over stated variance, and the share of |z| < 2 against Student's t of 31.
 
     All cells share the paths, so the ratio of variances has an error of sqrt(2 / 159) = .11: within three of
     them. Shares within 1.5 points in cells above 3 % of the peak and in blocks down to 1e-4 of the energy, 3 points
     down to 1e-5. A block that says of itself that it is uncertain claims nothing; with replicates no smaller than
-    those of a run they are less than 1 % of those above 1e-4, and 10 % of those above 1e-5.
+    those of a run they are less than 1 % of those above 1e-4, and 10 % of those above 1e-5. A false alarm in 3e-3 of
+    the cases from the ratio, and in as much from each of the shares at the most.
     """
     layers, theta, parametrization, side = HONEST[name]
     plan, split = prepared(Split, make_scene(layers, theta, parametrization), (side,))
     means, errors, block_means, block_errors = [], [], [], []
-    for seed in range(SEEDS):
-        found = make_replicates(plan, split, size, seed=100 + seed)[:, 0]
+    for number in range(SEEDS):
+        found = make_replicates(plan, split, size, seed + number)[:, 0]
         mean, variance = found.mean(axis=0), found.var(axis=0, ddof=1) / 32
         means.append(mean)
         errors.append(mended(mean, variance, PARAMETRIZATIONS[parametrization][1].ALIKE))

@@ -4,6 +4,8 @@ Under a smooth-looking coat over a white base nearly all light comes back: its a
 leaves. Cells taken to be independent state four times the scatter of the albedo.
 """
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -14,20 +16,23 @@ from goniosim.sums import noise_of
 from reference.scenes import dielectric, lambert, make_scene
 
 SEEDS = 60
-# 60 seeds tell a standard deviation to 9.2 %; 4 of these are exceeded once in 16 000 times.
+# 60 seeds tell a standard deviation to 9.2 %. What is stated exceeds one that is by chance too small by 4 of these with
+# a probability of 1.4e-3: the distribution is skewed.
 TOLERANCE = 4.0 / (2 * SEEDS) ** 0.5
 NAME = "reflection/internal"
 BLOCK = np.zeros((12, 24))
 BLOCK[2:10, 3:21] = 1.0
 
 
-@pytest.fixture(scope="module")
-def runs():
+@functools.cache
+def runs_from(seed):
     scene = make_scene([dielectric(1.5, 0.05), lambert(1.0)], 40.0, rows=12, columns=24)
-    return [simulate(scene, rays=10_000, seed=seed, threads=1) for seed in range(1, SEEDS + 1)]
+    return [simulate(scene, rays=10_000, seed=seed + number, threads=1) for number in range(SEEDS)]
 
 
-def test_the_albedo(runs):
+@pytest.mark.false_alarm(1.4e-3, seeds=(1, 1001, 2001, 3001))
+def test_the_albedo(seed):
+    runs = runs_from(seed)
     value, stderr = (np.array(each)[:, 0, 0] for each in zip(*(run.albedo(NAME) for run in runs), strict=True))
     scatter = value.std(ddof=1)
     assert np.sqrt((stderr**2).mean()) == pytest.approx(scatter, rel=TOLERANCE)
@@ -38,9 +43,10 @@ def test_the_albedo(runs):
     assert np.sqrt((audited**2).mean()) == pytest.approx(np.sqrt((stderr**2).mean()), rel=0.1)
 
 
-def test_the_energy_of_a_block(runs):
+@pytest.mark.false_alarm(1.4e-3, seeds=(1, 1001, 2001, 3001))
+def test_the_energy_of_a_block(seed):
     value, variance = [], []
-    for run in runs:
+    for run in runs_from(seed):
         part = run.components[NAME]
         value.append((BLOCK * part.energy[0, 0]).sum())
         independent = (BLOCK * part.stderr[0, 0] ** 2).sum()
@@ -49,9 +55,14 @@ def test_the_energy_of_a_block(runs):
     assert np.mean(variance) ** 0.5 == pytest.approx(np.std(value, ddof=1), rel=TOLERANCE)
 
 
+@pytest.mark.false_alarm(4.2e-3, seeds=(1, 1001, 2001, 3001))
 @pytest.mark.parametrize("factor", [1.3, 0.8])
-def test_the_rmse_and_the_albedo_of_a_comparison(runs, factor):
-    """A model that is too bright everywhere is compared with the amount of light, which is known well."""
+def test_the_rmse_and_the_albedo_of_a_comparison(factor, seed):
+    """A model that is too bright everywhere is compared with the amount of light, which is known well.
+
+    Three standard deviations, each with a false alarm in 1.4e-3 of the cases.
+    """
+    runs = runs_from(seed)
     mean = np.mean([run.components[NAME].bsdf for run in runs], axis=0)
     found, debiased = [], []
     for run in runs:
@@ -67,8 +78,12 @@ def test_the_rmse_and_the_albedo_of_a_comparison(runs, factor):
     assert np.mean([each.albedo_stderr[0, 0] ** 2 for each in found]) ** 0.5 == pytest.approx(albedo, rel=TOLERANCE)
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_an_absorbed_channel_is_uncertain_where_others_are_not():
-    """Strong absorption leaves next to nothing of all but the steepest paths: few of many hits carry the channel."""
+    """Strong absorption leaves next to nothing of all but the steepest paths: few of many hits carry the channel.
+
+    Over many seeds that is so in 90 +- 2 % of the cells.
+    """
     from reference.scenes import medium
 
     layers = [dielectric(1.5, 0.3), medium([0.0, 1.0, 60.0]), lambert(0.8)]

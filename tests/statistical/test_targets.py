@@ -2,7 +2,7 @@
 
 The target lies where it is hardest, at the error of a first round: half of the seeds stop there, those that believe
 they are better. If nine of ten runs meet it, 80 or fewer of 100 do once in 500 times; means over seeds are off by 4
-sigma once in 16,000 times, for each of some 20 blocks.
+sigma of t once in 8,000 times, for each of some 20 blocks: a right program fails in 5e-3 of the cases.
 """
 
 import threading
@@ -59,17 +59,17 @@ class Runs:
     def error(self, run, of):
         return assembly.worst_error(self.plan, run, 0, of)
 
-    def truth(self, rays):
-        run = self.start(12345)
+    def truth(self, rays, seed):
+        run = self.start(12345 + seed)
         run.prepare()
         for works in run.rounds(rays):
             self.drive.do(run, works)
         return run.estimate(self.side, 0)
 
-    def check(self, of, rays):
-        truth = self.truth(rays)
-        target = np.mean([self.error(self.reached(1000 + seed, of, np.inf), of) for seed in range(8)])
-        runs = [self.reached(seed, of, target) for seed in range(SEEDS)]
+    def check(self, of, rays, seed):
+        truth = self.truth(rays, seed)
+        target = np.mean([self.error(self.reached(seed + 1000 + n, of, np.inf), of) for n in range(8)])
+        runs = [self.reached(seed + n, of, target) for n in range(SEEDS)]
         assert len({run.rays[0] for run in runs}) > 1
         found = np.stack([self.energy(run) for run in runs])
         errors = np.array([self.true_error(energy, truth.energy, of) for energy in found])
@@ -108,25 +108,30 @@ def plan_of(layers):
     return make_plan(make_scene(layers, 40.0, rows=18, columns=36))
 
 
+stops = pytest.mark.false_alarm(5e-3, seeds=(0, 100_000, 200_000, 300_000))
+
+
+@stops
 @pytest.mark.parametrize("of", ["slice", pytest.param("albedo", marks=pytest.mark.slow)])
-def test_independent_paths(of, monkeypatch):
+def test_independent_paths(of, monkeypatch, seed):
     monkeypatch.setattr("goniosim.engine.analog.FIRST_ROUND", 1 << 14)
     plan = plan_of(METAL)
-    Runs(plan, lambda key: AnalogRun(plan, key, (UP,)), UP).check(of, 1 << 22)
+    Runs(plan, lambda key: AnalogRun(plan, key, (UP,)), UP).check(of, 1 << 22, seed)
 
 
 @pytest.mark.slow
+@stops
 @pytest.mark.parametrize("of", ["slice", "albedo"])
 @pytest.mark.parametrize(
     ("layers", "name", "side"),
     [(PLASTIC, "connection", UP), (METAL, "operator", UP), (SLAB, "operator", DOWN), (NARROW, "split", UP)],
     ids=["connection", "operator", "operator, slab", "split"],
 )
-def test_replicates(layers, name, side, of):
+def test_replicates(layers, name, side, of, seed):
     plan = plan_of(layers)
     # What it prepares is made once.
     estimator = ESTIMATORS[name](plan, (side,))
-    Runs(plan, lambda key: ReplicatedRun(plan, estimator, (side,), key), side).check(of, 1 << 23)
+    Runs(plan, lambda key: ReplicatedRun(plan, estimator, (side,), key), side).check(of, 1 << 23, seed)
 
 
 @pytest.mark.slow

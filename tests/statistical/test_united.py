@@ -66,8 +66,9 @@ def test_a_better_one_goes_on_with_random_numbers_of_its_own():
     assert more.rays.tolist() == [9000, 9000] and more.provenance["merged_seeds"] == "1, 2"
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_the_errors_are_those_of_as_many_rays():
-    """Four runs of 3000 rays and one of 12000; norms of errors of thousands of hits are known to some percent."""
+    """Four runs of 3000 rays and one of 12000; over many seeds the norms of their errors differ by 0.4 %."""
     merged = functools.reduce(unite, [made("analog", seed) for seed in (1, 2, 3, 4)])
     errors = [np.linalg.norm(r.components["reflection/internal"].stderr) for r in (merged, made("analog", 5, 12_000))]
     assert errors[0] == pytest.approx(errors[1], rel=0.05)

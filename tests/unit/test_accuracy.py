@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from goniosim.accuracy import READINGS, bound, norm, relative_error
+from goniosim.accuracy import READINGS, bound, fall, norm, paths_for, relative_error
 from goniosim.sums import Batches, Paths
 
 SIZE = np.array([[0.5, 0.5, 0.0], [1.0, 1.0, 0.5]])
@@ -62,6 +62,7 @@ def test_a_target_is_held_against_what_the_true_error_stays_below_in_nine_of_ten
     assert bound("albedo", energy, stderr, total, size, np.ones(1), noise) == pytest.approx(albedo, rel=0.02)
 
 
+@pytest.mark.false_alarm(0)
 def test_cells_that_share_their_noise_count_as_one():
     shared = np.random.default_rng(1).normal(1.0, 0.3, 32)
     energy = np.full((1, 10, 10), shared.mean() / 100.0)
@@ -77,3 +78,29 @@ def test_what_nodes_may_be_off_by_counts_too():
     given = "cells", ENERGY, 0.03 * ENERGY, TOTAL, SIZE, np.array([1.0, 0.0])
     whole = norm(ENERGY, SIZE)[0]
     assert bound(*given, None, 0.04 * whole) == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize(
+    ("noise", "independent", "slope"),
+    [
+        ([1.0, 0.5, 0.2], False, 0.66),
+        ([1.0, 0.5, 0.2], True, 0.5),
+        ([0.5], False, 0.5),
+        ([1.0, 0.5, 0.45], False, 0.5),
+        ([1.0, 0.5, 0.6], False, 0.5),
+        ([1.0, 0.5, 0.01], False, 1.0),
+    ],
+)
+def test_two_checkpoints_tell_how_a_noise_falls_within_bounds(noise, independent, slope):
+    assert fall([10.0, 50.0, 200.0][: len(noise)], noise, independent) == pytest.approx(slope, abs=0.005)
+
+
+def test_light_paths_that_a_target_takes():
+    assert paths_for(0.01, 0.1, 0.0, 1000, 0.5) == pytest.approx(1e5)
+    assert paths_for(0.01, 0.1, 0.0, 1000, 1.0) == pytest.approx(1e4)
+    assert paths_for(0.01, 0.009, 0.0, 1000, 0.5) == 1000.0
+    # Both have a part that no path takes away: noises of .08 and .008 then.
+    assert paths_for(0.01, np.hypot(0.08, 0.006), 0.006, 1000, 0.5) == pytest.approx(1e5)
+    assert paths_for(0.01, 0.1, 0.01, 1000, 0.5) == np.inf
+    # A number, however far.
+    assert 1e200 < paths_for(1e-200, 0.1, 0.0, 1000, 0.5) < np.inf

@@ -26,12 +26,13 @@ def filled(result, bsdf, stderr=0.0, seed=1):
     return result
 
 
+@pytest.mark.false_alarm(1.2e-6, seeds=(1, 101))
 @pytest.mark.parametrize("stderr", [0.0, 0.2])
-def test_what_is_lost_to_cells_is_the_scatter_within_them(stderr):
-    """Values 1 and 3 side by side: the mean 2, off by 1. With noise within 5 stated errors: fails in 1e-6."""
+def test_what_is_lost_to_cells_is_the_scatter_within_them(stderr, seed):
+    """Values 1 and 3 side by side: the mean 2, off by 1. With noise within 5 stated errors, twice: fails in 1.2e-6."""
     result = make_result((30.0,), rows=24, columns=48, components=(NAME,))
     stripes = np.where(np.arange(48) % 2, 3.0, 1.0)
-    (fine, coarse) = lost_to_cells(filled(result, stripes, stderr))[NAME]
+    (fine, coarse) = lost_to_cells(filled(result, stripes, stderr, seed))[NAME]
     assert (fine["rows"], fine["columns"], coarse["rows"], coarse["columns"]) == (12, 24, 6, 12)
     for each in (fine, coarse):
         assert each["lost"] == pytest.approx(1.0 / np.sqrt(5.0), abs=5.0 * each["uncertainty"] + 1e-12)
@@ -64,9 +65,10 @@ def test_the_error_between_directions_is_that_of_a_parabola():
         assert each["error"] == pytest.approx(worst, rel=1e-6)
 
 
-def test_noise_is_taken_out_of_a_difference():
+@pytest.mark.false_alarm(1e-6, seeds=(2, 102))
+def test_noise_is_taken_out_of_a_difference(seed):
     """A difference of 0.3 under noise of 1: within 5 stated errors, which fails in 1e-6 of the cases."""
-    noise = np.random.default_rng(2).normal(size=(3, 100_000))
+    noise = np.random.default_rng(seed).normal(size=(3, 100_000))
     one = np.ones_like(noise)
     error, uncertainty = difference(0.3 + noise, one, one, one[0] / 100_000)
     assert error == pytest.approx(0.3, abs=5.0 * uncertainty)

@@ -7,6 +7,7 @@ import pytest
 
 from goniosim.engine.drive import Drive, Limit
 from goniosim.engine.ordered import in_order
+from goniosim.engine.outlook import Ahead
 
 
 def ordered(works, threads=3, stop=None, work=None):
@@ -64,6 +65,8 @@ NEVER = 0
 
 class Counted:
     """A run in which a direction is accurate after so many rounds; a ray of it takes so many seconds."""
+
+    sides = (0,)
 
     def __init__(self, *needed, seconds=0.0):
         self.needed = needed
@@ -160,6 +163,55 @@ def test_time_is_shared_and_what_is_too_short_for_one_run_serves_another(clock):
     order = [(0, 0), (1, 0), (0, 1), (1, 1), (1, 2), (1, 3), (1, 4)]
     assert reach(runs, Limit(None, 660.0), clock=clock) == (False, order)
     assert clock.seconds == pytest.approx(300.0 + 310.0)
+
+
+def looking_ahead(error, rays):
+    """An `Ahead` for which all directions take so many rays, and what it tells."""
+    told = []
+    return Ahead(lambda run, m: (error, rays), told.append), told
+
+
+def test_a_target_out_of_reach_ends_what_nothing_limits(clock):
+    """After the first round, of ten seconds, instead of three hundred years."""
+    ahead, told = looking_ahead(0.1, 1e11)
+    assert reach([Counted(9, seconds=0.1)], Limit(None, None, ahead=ahead), clock=clock) == (False, [(0, 0)])
+    (outlook,) = told
+    assert (outlook.error, outlook.paths, outlook.needed, outlook.is_cut) == (0.1, 100, 1e11, False)
+    assert outlook.seconds == pytest.approx(1e10)
+    # Whoever limits it wants what the limits give.
+    ahead, told = looking_ahead(0.1, 1e11)
+    found = reach([Counted(9, seconds=0.1)], Limit(1500, None, ahead=ahead), clock=clock)
+    assert (found, [outlook.is_cut for outlook in told]) == ((False, [(0, number) for number in range(4)]), [True])
+
+
+@pytest.mark.parametrize(
+    ("rays", "most", "seconds", "told"),
+    [
+        # Ten seconds a round and 990 to come; a day to come.
+        (10_000.0, None, None, []),
+        (1e6, None, None, [False]),
+        # Twice the limits, or less.
+        (10_000.0, 6000, None, []),
+        (10_000.0, 4000, None, [True]),
+        (10_000.0, None, 600.0, []),
+        (10_000.0, None, 400.0, [True]),
+        # After the first round of an estimator nothing is known.
+        (None, None, 400.0, []),
+    ],
+)
+def test_what_takes_long_or_longer_than_its_limits_is_told_once(clock, rays, most, seconds, told):
+    ahead, found = looking_ahead(0.1, rays)
+    reach([Counted(5, seconds=0.1)], Limit(most, seconds, ahead=ahead), clock=clock)
+    assert [outlook.is_cut for outlook in found] == told
+
+
+def test_news_are_told_again(clock):
+    """A forecast that falls to a fifth, and again; one that falls to a half is none."""
+    later = iter([1e8, 5e7, 1e7, 1e7, 1e6, 1e6, 1e6])
+    told = []
+    ahead = Ahead(lambda run, m: (0.1, next(later)), told.append)
+    reach([Counted(7, seconds=0.1)], Limit(None, None, ahead=ahead), clock=clock)
+    assert [outlook.needed for outlook in told] == [1e8, 1e7, 1e6]
 
 
 def test_a_stop_ends_what_is_not_reached():

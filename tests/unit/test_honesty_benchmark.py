@@ -15,12 +15,12 @@ SEEDS = 12
 SHAPE = (1, 30, 60)
 
 
-def row_of(folder, stated=1.0, estimator="operator", dim=1.0, noise=0.1):
+def row_of(folder, stated=1.0, estimator="operator", dim=1.0, noise=0.1, seed=3):
     """A row of slices with an error of ``noise`` in every cell, of which ``stated`` times as much is told.
 
     The sums of the batches are those of independent cells; those of the last rows hold ``dim`` as much as the others.
     """
-    rng = np.random.default_rng(3)
+    rng = np.random.default_rng(seed)
     result = make_result((0.0,), ("grey",), *SHAPE[1:], components=(NAME,), estimator=estimator, rays=10**6)
     component, cells = result.components[NAME], result.cells
     truth = cells.projected_solid_angle[0] / math.pi
@@ -38,9 +38,10 @@ def row_of(folder, stated=1.0, estimator="operator", dim=1.0, noise=0.1):
     return one.row("made-up", NAME, 0.0, 10**6, cells, 0)
 
 
-def test_honest_bars_are_found_honest(tmp_path):
+@pytest.mark.false_alarm(1e-2, seeds=(3, 103, 203, 303, 403))
+def test_honest_bars_are_found_honest(tmp_path, seed):
     """1800 cells and 450 blocks by 12 seeds: a right table is off with a probability of about 1 %."""
-    row = row_of(tmp_path)
+    row = row_of(tmp_path, seed=seed)
     assert row.faults == [] and row.estimator == "operator"
     assert row.ratio[0] == pytest.approx(1.0, abs=0.05) and 0.0 < row.ratio[1] < 0.05
     for name in ("bright", "1e-3", "1e-4"):
@@ -50,30 +51,40 @@ def test_honest_bars_are_found_honest(tmp_path):
     assert "honest" in honesty.line(row)
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_bars_that_are_too_short_are_found(tmp_path):
-    """Stated 20 % too small: the ratio is 1.56, and a share 89 % at the most."""
+    """Stated 20 % too small: the ratio is 1.56, to 0.6 % over many seeds, and a share 89 % at the most."""
     row = row_of(tmp_path, stated=0.8)
     assert row.faults == ["ratio", "bright", "1e-3", "1e-4", "1e-5"]
     assert row.ratio[0] == pytest.approx(1.0 / 0.64, rel=0.08)
     assert "OFF: ratio" in honesty.line(row)
 
 
-def test_dim_blocks_are_a_group_of_their_own(tmp_path):
-    """Ninety of 450 blocks hold 1e-6 to 1e-5 of the energy each."""
-    row = row_of(tmp_path, dim=3e-3)
+@pytest.mark.false_alarm(1e-6, seeds=(3, 103))
+def test_dim_blocks_are_a_group_of_their_own(tmp_path, seed):
+    """Ninety of 450 blocks hold 1e-6 to 1e-5 of the energy each. Over many seeds their share scatters by 0.0095."""
+    row = row_of(tmp_path, dim=3e-3, seed=seed)
     assert row.shares["1e-6"][0] == pytest.approx(row.expected, abs=0.05)
 
 
-def test_independent_paths_state_what_the_covariance_of_cells_leaves(tmp_path):
-    """Blocks of cells that scatter on their own are that of few paths less: here next to nothing."""
-    row = row_of(tmp_path, estimator="analog")
+@pytest.mark.false_alarm(2e-4, seeds=(3, 103, 203))
+def test_independent_paths_state_what_the_covariance_of_cells_leaves(tmp_path, seed):
+    """Blocks of cells that scatter on their own are that of few paths less: here next to nothing.
+
+    Over many seeds the share is 0.953 +- 0.0032.
+    """
+    row = row_of(tmp_path, estimator="analog", seed=seed)
     assert row.expected == pytest.approx(0.9545, abs=1e-4)
     assert row.shares["1e-3"][0] == pytest.approx(0.945, abs=0.02)
 
 
-def test_uncertain_cells_do_not_count(tmp_path):
-    """Of 32 batches a relative error of 32 % is that of ten: cells with 40 % say nothing, blocks of them do."""
-    row = row_of(tmp_path, noise=0.4)
+@pytest.mark.false_alarm(0.1, seeds=tuple(range(3, 13)))
+def test_uncertain_cells_do_not_count(tmp_path, seed):
+    """Of 32 batches a relative error of 32 % is that of ten: cells with 40 % say nothing, blocks of them do.
+
+    Over many seeds the share is 0.013 below what is expected, and scatters by 0.010.
+    """
+    row = row_of(tmp_path, noise=0.4, seed=seed)
     assert math.isnan(row.shares["bright"][0]) and row.shares["1e-3"][0] == pytest.approx(row.expected, abs=0.03)
     assert row.unsure == 0.0
 

@@ -204,11 +204,14 @@ def test_a_target_needs_what_its_limit_or_a_long_run_needs():
     assert needed(target=0.01) == needed(rays=10**15) == needed(rays=10**6)
 
 
-def test_ledgers_that_are_added_up_keep_the_balance(monkeypatch):
-    scene = make_scene(PLASTIC, [30.0], rows=2, columns=2, rays=40_000, threads=1)
+@pytest.mark.false_alarm(3e-5, seeds=(1, 101))
+def test_ledgers_that_are_added_up_keep_the_balance(monkeypatch, seed):
+    """Standard errors of 16 parts, of up to ten entries, exceed those of 64 by 90 % with a probability of 3e-5."""
+    scene = make_scene(PLASTIC, [30.0], rows=2, columns=2, rays=40_000, threads=1, seed=seed)
     before = simulate(scene)
-    monkeypatch.setattr("goniosim.engine.analog.MOST_LEDGERS", 16)
-    after = simulate(scene)
+    with monkeypatch.context() as patched:
+        patched.setattr("goniosim.engine.analog.MOST_LEDGERS", 16)
+        after = simulate(scene)
     assert after.rays.tolist() == before.rays.tolist()
     for name, energy in before.audit.energy.items():
         np.testing.assert_allclose(after.audit.energy[name], energy, rtol=1e-12)

@@ -55,8 +55,9 @@ def test_a_bright_cell_leaves_nothing_behind_in_those_beyond_its_neighbours():
     np.testing.assert_allclose(mended(mean, variance, AROUND)[4:, 4:], 1e-40, rtol=1e-14)
 
 
+@pytest.mark.false_alarm(1e-12)
 def test_total_variance_of_uniform_darkness_stays():
-    """Few hits, at random: what is handed round is neither made nor lost."""
+    """Few hits, at random: what is handed round is neither made nor lost, to 0.05 % over many seeds."""
     rng = np.random.default_rng(2)
     replicates = rng.poisson(0.02, (32, 90, 180)).astype(float)
     variance = replicates.var(axis=0, ddof=1) / 32
@@ -66,8 +67,9 @@ def test_total_variance_of_uniform_darkness_stays():
     assert found.sum() == pytest.approx(variance.sum(), rel=0.01)
 
 
+@pytest.mark.false_alarm(1e-6, seeds=(3, 103))
 @pytest.mark.parametrize("parametrization", PARAMETRIZATIONS)
-def test_a_narrow_lobe_is_not_given_more_noise_than_it_has(parametrization):
+def test_a_narrow_lobe_is_not_given_more_noise_than_it_has(parametrization, seed):
     """Few hits around the mirror direction, where cells of half slices grow fifteenfold from row to row.
 
     Norm of the noise, in which small cells count most, within 10 %: some 5 standard errors.
@@ -79,7 +81,7 @@ def test_a_narrow_lobe_is_not_given_more_noise_than_it_has(parametrization):
     tilt = (0.5 + rows) ** 2 * 1.9e-4 if parametrization == "half" else np.hypot(rows - 30, np.arange(180) - 179.5)
     lobe = 1.0 / (1.0 + (tilt / (1e-3 if parametrization == "half" else 10.0)) ** 2) ** 2
     energy = size * lobe
-    hits = np.random.default_rng(3).poisson(60_000 * energy / energy.sum(), (32, 90, 180))
+    hits = np.random.default_rng(seed).poisson(60_000 * energy / energy.sum(), (32, 90, 180))
     mean, variance = hits.mean(axis=0), hits.var(axis=0, ddof=1) / 32
     lit = size > 0.0
     found = (mended(mean, variance, slices.ALIKE)[lit] / size[lit]).sum()

@@ -44,6 +44,7 @@ def test_every_replicate_is_in_one_chunk(chunk):
     assert max(map(len, pieces)) <= chunk
 
 
+@pytest.mark.false_alarm(0)
 def test_one_round_is_the_mean_and_the_scatter():
     found = replicates(REPLICATES, 1)
     energy, stderr = added([(100, found)]).slices(0)
@@ -52,6 +53,7 @@ def test_one_round_is_the_mean_and_the_scatter():
     assert np.allclose(stderr, unfold(whole.std(axis=0, ddof=1) / np.sqrt(REPLICATES), 10))
 
 
+@pytest.mark.false_alarm(0)
 def test_rounds_are_weighed_by_their_sizes():
     first, second = replicates(REPLICATES, 1), replicates(REPLICATES, 2)
     sums = added([(100, first), (200, second)])

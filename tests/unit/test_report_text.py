@@ -45,9 +45,12 @@ def test_counts_are_written_as_in_a_scene_file(number, shown):
         (7500, "2 h 5 min"),
         (86_399, "23 h 59 min"),
         (100_000, "1 d 3 h"),
+        (9e7, "1041 d 16 h"),
+        (1e9, "32 years"),
+        (1e15, "3.2e7 years"),
     ],
 )
-def test_durations_have_two_units(seconds, shown):
+def test_durations_have_two_units_or_are_years(seconds, shown):
     assert text.duration(seconds) == shown
 
 

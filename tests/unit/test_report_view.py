@@ -77,18 +77,19 @@ def test_the_curve_follows_the_plane_with_the_mirror_direction_on_the_positive_s
     assert np.all(sigma == 0.0)
 
 
+@pytest.mark.false_alarm(2e-6, seeds=(7, 107))
 @pytest.mark.parametrize(
     ("cells", "correlated", "low", "high"),
     [(2, True, 0.9, 1.1), (40, True, 0.9, 1.1), (2, False, 1.0, 1.35), (40, False, 1.5, 2.5)],
 )
-def test_the_error_of_a_patch_is_not_too_small_for_any_correlation(cells, correlated, low, high):
+def test_the_error_of_a_patch_is_not_too_small_for_any_correlation(cells, correlated, low, high, seed):
     """Over 4000 patches, the root mean square of the stated error against that of the actual one.
 
     The ratio has a standard deviation of about 2 % (1 % for the actual error, as much for the
     stated one); the limits are at least 5 of those away from what is expected (1, 1, 1.22, 2.12), so
-    the four cases together raise a false alarm with a probability below 1e-5.
+    each of the four cases raises a false alarm with a probability below 2e-6.
     """
-    rng = np.random.default_rng(7)
+    rng = np.random.default_rng(seed)
     n = 4000
     noise = rng.normal(0.0, 0.1, (n, 1 if correlated else cells)) * np.ones((n, cells))
     mean, error = inplane._mean(1.0 + noise, np.full((n, cells), 0.1))

@@ -81,6 +81,7 @@ def test_the_estimator_of_a_result_is_that_of_its_parts():
     assert stderr[0, 1] == 1.5 / result.rays[0] > 0.0 and stderr[0, 0] != stderr[0, 1]
 
 
+@pytest.mark.false_alarm(0)
 @pytest.mark.parametrize("name", [None, "reflection/internal/order_2"])
 def test_sums_over_cells_have_the_error_of_sums_over_paths(name):
     """Paths are made up one by one: the error of their total energy must come out of cells alone, to rounding."""

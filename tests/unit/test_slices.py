@@ -74,11 +74,15 @@ def test_solid_angles_cover_the_hemisphere(name, theta, rows, columns):
     assert (geometry.projected_solid_angle >= 0).all()
 
 
+@pytest.mark.false_alarm(4e-4, seeds=(2, 102, 202))
 @pytest.mark.parametrize("name", ["classic", "half"])
 @pytest.mark.parametrize("theta", [0.0, 30.0, 75.0])
-def test_solid_angles_by_counting(name, theta):
-    """Uniform and cosine-distributed directions counted in coarse cells, 5 sigma: false alarm 1e-4 in all."""
-    rng = np.random.default_rng(2)
+def test_solid_angles_by_counting(name, theta, seed):
+    """Uniform and cosine-distributed directions counted in 216 coarse cells, 5 sigma: false alarm 4e-4.
+
+    As cells are normally distributed, it is 1.2e-4; the smallest have some 25 counts.
+    """
+    rng = np.random.default_rng(seed)
     n, rows, columns = 400_000, 9, 12
     geometry = slice_geometry(name, rows, columns, theta)
     phi = rng.uniform(0, 360, n)

@@ -155,18 +155,19 @@ def test_the_narrow_way_out_is_not_left_with_few_paths():
     assert Split(plan, (DOWN,)).facets.tolist() == [[0, MOST_FACETS]]
 
 
-def test_crowds_follow_one_branch_and_agree_with_those_who_follow_both(monkeypatch):
-    """Totals over seven interfaces within 4.5 sigma: a false alarm in 1e-5 of the cases."""
+@pytest.mark.false_alarm(1.2e-4, seeds=(1, 101, 201))
+def test_crowds_follow_one_branch_and_agree_with_those_who_follow_both(monkeypatch, seed):
+    """Totals over seven interfaces within 4.5 sigma of t, 62 and 31 degrees of freedom: a false alarm in 1.2e-4."""
     layers = [dielectric(1.5 if i % 2 else 1.1, 0.4 * (i % 3)) for i in range(6)] + [lambert(0.9)]
     plan, split = prepared(Split, small(layers))
     totals = []
     for crowd in (CROWD * BATCH, -1):
         monkeypatch.setattr(Workspace.advance, "__defaults__", (crowd,))
         # Folded: two cells each.
-        totals.append(2.0 * make_replicates(plan, split, 2048, seed=1).sum(axis=(1, 2, 3, 4)))
+        totals.append(2.0 * make_replicates(plan, split, 2048, seed).sum(axis=(1, 2, 3, 4)))
     difference = totals[0].mean() - totals[1].mean()
     assert abs(difference) < 4.5 * np.sqrt((totals[0].var(ddof=1) + totals[1].var(ddof=1)) / 32)
-    analog = simulate(small(layers), rays=400_000, estimator="analog").audit
+    analog = simulate(small(layers), rays=400_000, seed=seed, estimator="analog").audit
     stderr = np.hypot(analog.stderr["reflected_internal"][0, 0], totals[1].std(ddof=1) / 32**0.5)
     assert abs(totals[1].mean() - analog.energy["reflected_internal"][0, 0]) < 4.5 * stderr
 

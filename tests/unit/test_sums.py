@@ -1,9 +1,11 @@
 """Sums over cells have honest errors, whether paths are independent or all cells share them.
 
 Made-up replicates whose cells hang together in known ways, as those of real estimators do. 120 seeds tell a standard
-deviation to 6.5 %, and 4.5 of these, 29 %, are exceeded once in 1.5e5 times.
+deviation to 6.5 %. What is stated exceeds one that is by chance too small by 4.5 of these, 29 %, with a probability of
+1.8e-4: the distribution is skewed.
 """
 
+import functools
 from types import SimpleNamespace
 
 import numpy as np
@@ -66,15 +68,16 @@ MODELS = {"true": TRUTH, "bright": 1.4 * TRUTH, "shifted": np.roll(TRUTH, 3, axi
 
 
 SLOW = [pytest.param(kind, marks=pytest.mark.slow) for kind in ("independent", "shared", "modes", "exclusive")]
+every_kind = pytest.mark.parametrize("kind", ["folded", "rings", *SLOW])
 
 
-@pytest.fixture(scope="module", params=["folded", "rings", *SLOW])
-def found(request):
+@functools.cache
+def found(kind, seed):
     """Over the seeds: weighted sums with their variances, and measures with their errors."""
-    rng = np.random.default_rng(2)
+    rng = np.random.default_rng(seed)
     sums, errors = {name: [] for name in WEIGHTS}, {name: [] for name in MODELS}
     for _ in range(SEEDS):
-        part = component(replicates(request.param, rng))
+        part = component(replicates(kind, rng))
         noise = Batches(part.energy[0], part.stderr[0], part.batches[0])
         for name, weights in WEIGHTS.items():
             plain = (weights**2 * part.stderr[0, 0] ** 2).sum()
@@ -88,12 +91,14 @@ def found(request):
             errors[name].append(
                 [debiased, one.variance[0, 0], one.variance_if_true[0, 0], error.rmse, error.stderr, error.significant]
             )
-    return request.param, *({name: np.array(each) for name, each in part.items()} for part in (sums, errors))
+    return tuple({name: np.array(each) for name, each in part.items()} for part in (sums, errors))
 
 
+@pytest.mark.false_alarm(1.8e-4, seeds=(2, 102, 202))
+@every_kind
 @pytest.mark.parametrize("name", WEIGHTS)
-def test_a_sum_over_cells_that_share_paths_has_an_honest_error(found, name):
-    kind, sums, _ = found
+def test_a_sum_over_cells_that_share_paths_has_an_honest_error(kind, name, seed):
+    sums, _ = found(kind, seed)
     value, variance, plain = sums[name].T
     scatter = value.std(ddof=1)
     assert np.sqrt(variance.mean()) == pytest.approx(scatter, rel=TOLERANCE)
@@ -102,9 +107,12 @@ def test_a_sum_over_cells_that_share_paths_has_an_honest_error(found, name):
         assert abs(np.sqrt(plain.mean()) / scatter - 1.0) > 1.5 * TOLERANCE
 
 
+@pytest.mark.false_alarm(4e-4, seeds=(2, 102, 202))
+@every_kind
 @pytest.mark.parametrize("name", ["bright", "shifted"])
-def test_the_error_of_an_rmse_is_honest_where_cells_share_paths(found, name):
-    _, _, errors = found
+def test_the_error_of_an_rmse_is_honest_where_cells_share_paths(kind, name, seed):
+    """A mean within 4.5 sigma of t, 119 degrees of freedom, and two standard deviations: false alarm 4e-4."""
+    _, errors = found(kind, seed)
     debiased, variance, _, value, stderr, significant = errors[name].T
     exact = ((MODELS[name] - TRUTH) ** 2 / SIZE).sum()
     assert abs(debiased.mean() - exact) < 4.5 * debiased.std() / SEEDS**0.5
@@ -113,9 +121,14 @@ def test_the_error_of_an_rmse_is_honest_where_cells_share_paths(found, name):
     assert significant.all()
 
 
-def test_the_true_model_is_rarely_told_from_noise_where_cells_share_paths(found):
-    """What few modes share is skewed like chi-square of few degrees of freedom: up to 7 % instead of 2.3; 4 sigma."""
-    _, _, errors = found
+@pytest.mark.false_alarm(3e-4, seeds=(2, 102, 202))
+@every_kind
+def test_the_true_model_is_rarely_told_from_noise_where_cells_share_paths(kind, seed):
+    """What few modes share is skewed like chi-square of few degrees of freedom: up to 7 % instead of 2.3; 4 sigma.
+
+    Of 120, 20 or more are with a probability of 2.6e-4.
+    """
+    _, errors = found(kind, seed)
     debiased, variance, if_true, _, _, significant = errors["true"].T
     # A variance of a chi-square of few degrees of freedom scatters by more than that of a normal quantity.
     assert np.sqrt(if_true.mean()) == pytest.approx(debiased.std(ddof=1), rel=2.0 * TOLERANCE)
@@ -128,6 +141,7 @@ def paths(rng, n=500, cells=24):
     return np.where(cell == np.arange(cells)[:, None], weight, 0.0).reshape(1, 4, 6, n)
 
 
+@pytest.mark.false_alarm(0)
 def test_sums_over_independent_paths_have_the_error_of_their_mean_to_rounding():
     rng = np.random.default_rng(3)
     made = paths(rng)
@@ -180,10 +194,11 @@ def test_an_absorbed_channel_of_well_hit_cells_is_uncertain():
     assert effective_count(mean, stderr, 10_000) == pytest.approx([30.0, 1.0])
 
 
+@pytest.mark.false_alarm(3.2e-5, seeds=(7, 107))
 @pytest.mark.parametrize(("weights", "covered"), [("equal", 0.92), ("exponential", 0.91)])
-def test_cells_that_are_not_uncertain_keep_their_word(weights, covered):
+def test_cells_that_are_not_uncertain_keep_their_word(weights, covered, seed):
     """Poissonian hits, ten in effect: the truth lies within two errors. 20 000 cells, less 4 sigma of 0.3 %."""
-    rng = np.random.default_rng(7)
+    rng = np.random.default_rng(seed)
     share, below = [], []
     for hits in (2.0, FEWEST if weights == "equal" else 2.0 * FEWEST):
         n = rng.poisson(hits, 20_000)

@@ -18,6 +18,7 @@ def _deposit(cells, weights, n_cells):
     return histogram
 
 
+@pytest.mark.false_alarm(0)
 @pytest.mark.parametrize("channels", [1, 2, 3, 5])
 @pytest.mark.parametrize("n", [0, 1, 17, 400])
 def test_every_deposit_is_a_path(channels, n):

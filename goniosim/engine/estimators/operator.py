@@ -81,6 +81,24 @@ class Operator:
         self.application.prepare()
 
     @property
+    def looks(self):
+        """Looks at the radiance that all cells of a slice take once."""
+        each = POINTS
+        if self.variant.leaves == IN:
+            each = POINTS_OF_EXIT + TAILS + (LIGHTS if self.variant.sees_light else 0)
+        return each * self.plan.rows * self.plan.width
+
+    def parts(self, size):
+        """Into how many parts cells are cut along the column and along the row, in replicates of so many light paths.
+
+        Each part has points of its own, whose scatter is a floor that no number of light paths would lower. So there
+        are as many looks as light paths, once those are more than the cells take: they cost a third of these.
+        """
+        parts = max(1, size // self.looks)
+        high = math.isqrt(parts)
+        return high, parts // high
+
+    @property
     def memory(self):
         """Bytes shared by all threads, and bytes of one workspace."""
         shared, own = self.application.memory
@@ -162,9 +180,10 @@ class Workspace:
         values = operator.application.apply(self.space)
         events += operator.application.multiplications // MULTIPLICATIONS
         for r, key in enumerate(keys):
-            if stop is not None and stop.is_set():
+            found = self._cells(direction, size, key, values[:, :, :, r], out[r], stop, stride)
+            if found is None:
                 return None
-            events += self._cells(direction, key, values[:, :, :, r], out[r], stride)
+            events += found
         return events
 
     def _walk(self, direction, size, keys, stop, stride):
@@ -187,28 +206,33 @@ class Workspace:
         operator.application.take(self.space, stride, 1.0 / size)
         return int(state[rays.EVENTS])
 
-    def _cells(self, direction, key, values, out, stride):
+    def _cells(self, direction, size, key, values, out, stop, stride):
         """Fill the slices of a replicate from ``values[group, azimuth, polar, slot, channel]``; returns events."""
-        plan = self.operator.plan
-        if self.operator.application.sums_cells:
+        operator, plan = self.operator, self.operator.plan
+        if operator.application.sums_cells:
             slots, channels, rows, width = out.shape
             out.reshape(slots, len(values), -1, rows, width)[...] = values.transpose(3, 0, 4, 2, 1)
             return 0
-        gather(
-            self._radiance(values[:, ::stride, ::stride]),
-            plan.parametrization,
-            plan.rows,
-            plan.columns,
-            plan.light[direction],
-            self.exits,
-            self.source,
-            plan.taus[0],
-            key,
-            out.reshape(-1, plan.rows * plan.width),
-        )
-        looks = POINTS_OF_EXIT + TAILS if len(self.exits) else POINTS
-        looks += LIGHTS if len(self.source) else 0
-        return LOOK * looks * plan.rows * plan.width
+        radiance, high, wide = self._radiance(values[:, ::stride, ::stride]), *operator.parts(size)
+        out[...] = 0.0
+        for strip in range(high):
+            if stop is not None and stop.is_set():
+                return None
+            gather(
+                radiance,
+                plan.parametrization,
+                plan.rows,
+                plan.columns,
+                (high, wide),
+                strip,
+                plan.light[direction],
+                self.exits,
+                self.source,
+                plan.taus[0],
+                key,
+                out.reshape(-1, plan.rows * plan.width),
+            )
+        return LOOK * operator.looks * high * wide
 
     def _radiance(self, values):
         """Numbers of a replicate, side by side for each of the nodes that are used."""

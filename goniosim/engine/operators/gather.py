@@ -28,14 +28,18 @@ X, Y, Z, MEASURE, INSIDE_X, INSIDE_Y, INSIDE_Z, TAIL_HEIGHT, TAIL_SHARE, GAIN, N
 
 
 @kernel
-def gather(values, parametrization, rows, columns, light, exits, source, taus, key, out):
-    """Energy that leaves into the cells of a folded slice.
+def gather(values, parametrization, rows, columns, parts, strip, light, exits, source, taus, key, out):
+    """Add the energy that leaves into the cells of a folded slice, or into a strip of each.
 
     Parameters
     ----------
     values : ndarray, shape (azimuths, polar angles, stencils.padded(n))
         Radiance at the nodes: outside, or below an exit.
     parametrization, rows, columns : int
+    parts : (int, int)
+        Into how many parts cells are cut along the column and along the row; each has points of its own.
+    strip : int
+        Which of those along the column.
     light : ndarray, shape (3,)
     exits : ndarray, shape (0,) or (2,)
         Width of the exit and its index inside over outside, or nothing.
@@ -46,13 +50,14 @@ def gather(values, parametrization, rows, columns, light, exits, source, taus, k
     key : uint64
         Of the replicate.
     out : ndarray, shape (n, rows * width)
-        Overwritten.
+        Added to.
     """
     space = np.empty((N_SCRATCH, BLOCK))
     weights = np.empty((WEIGHTS, BLOCK))
     nodes = np.empty((4, BLOCK), np.int64)
     found = np.empty((values.shape[2] // LANES, BLOCK, LANES))
     shares = np.empty((taus.shape[0], BLOCK))
+    places = np.empty(BLOCK, np.int64)
     width = out.shape[1] // rows
     cells_key = derive_key(key, CELLS)
     leaves = exits.shape[0] > 0
@@ -61,16 +66,19 @@ def gather(values, parametrization, rows, columns, light, exits, source, taus, k
     lit = source.shape[0] > 0
     draws = (_DRAWS_OF_LIGHT if lit else _DRAWS) if leaves else _DRAWS_OF_POINTS
     points = POINTS_OF_EXIT if leaves else POINTS
-    out[...] = 0.0
+    high, wide = parts
     for row in range(rows):
-        count = columns_above(parametrization, row, rows, columns, width, light)
+        # Of cells as small as the parts.
+        fine = row * high + strip
+        count = columns_above(parametrization, fine, rows * high, columns * wide, width * wide, light)
         for first in range(0, count, BLOCK):
             n = min(BLOCK, count - first)
-            cell = row * width + first
-            _draw(cells_key, cell, n, draws, space)
+            _draw(cells_key, (strip * rows + row) * width * wide + first, n, draws, space)
+            for i in range(n):
+                places[i] = row * width + (first + i) // wide
             for i in range(points):
                 find_points(
-                    i * (4 // points), parametrization, row, first, n, rows, columns, light,
+                    i * (4 // points), parametrization, fine, first, n, rows * high, columns * wide, light,
                     space[U], space[V], space[X], space[Y], space[Z], space[MEASURE],
                 )  # fmt: skip
                 tailed = rough and i % (POINTS_OF_EXIT // TAILS) == 0
@@ -91,7 +99,7 @@ def gather(values, parametrization, rows, columns, light, exits, source, taus, k
                         )  # fmt: skip
                         _add_light(weights[0], n, taus.shape[0], found)
                     _absorb(z, n, taus, leaves, space[GAIN], shares)
-                    _add(found, n, shares, cell, out)
+                    _add(found, n, shares, places, wide, out)
                 if lit and rough and i % (POINTS_OF_EXIT // LIGHTS) == 0:
                     number = i // (POINTS_OF_EXIT // LIGHTS)
                     x, y, z = space[INSIDE_X], space[INSIDE_Y], space[INSIDE_Z]
@@ -100,7 +108,7 @@ def gather(values, parametrization, rows, columns, light, exits, source, taus, k
                         x, y, z, space[X], space[Y], space[Z], n, light, source, exits, space[MEASURE], space[GAIN]
                     )  # fmt: skip
                     _absorb(z, n, taus, leaves, space[GAIN], shares)
-                    _add_shares(shares, n, cell, out)
+                    _add_shares(shares, n, places, out)
 
 
 @stage
@@ -161,19 +169,25 @@ def _absorb(z, n, taus, leaves, gain, shares):
 
 
 @stage
-def _add(found, n, shares, cell, out):
+def _add(found, n, shares, places, wide, out):
     for e in range(out.shape[0]):
         lanes = found[e // LANES]
         share = shares[e % shares.shape[0]]
-        cells = out[e][cell : cell + n]
-        for i in range(n):
-            cells[i] += share[i] * lanes[i, e % LANES]
+        cells = out[e]
+        if wide == 1:
+            # Neighbours, in lockstep.
+            cells = cells[places[0] : places[0] + n]
+            for i in range(n):
+                cells[i] += share[i] * lanes[i, e % LANES]
+        else:
+            for i in range(n):
+                cells[places[i]] += share[i] * lanes[i, e % LANES]
 
 
 @stage
-def _add_shares(shares, n, cell, out):
+def _add_shares(shares, n, places, out):
     for c in range(shares.shape[0]):
         share = shares[c]
-        cells = out[c][cell : cell + n]
+        cells = out[c]
         for i in range(n):
-            cells[i] += share[i]
+            cells[places[i]] += share[i]

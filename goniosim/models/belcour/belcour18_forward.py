@@ -8,6 +8,7 @@ reflection, and all transmission about the refracted direction.
 
 import numpy as np
 
+from ..._jit import kernel
 from ...optics.refraction import refracted_cosine
 from ...scene import optical_stack
 from ..model import Model
@@ -45,12 +46,17 @@ def _prepare(scene, theta_i_deg, component, options):
     return prepare_lobes(scene, options, light, energy[None], np.array([alpha]))
 
 
+@kernel
+def _cosine_below(cosine, ratio):
+    return refracted_cosine(cosine, ratio)
+
+
 def _refracted_light(light, ratio):
     """The direction whose mirror image is the light refracted into the last medium.
 
     Under total reflection there is none: the energy of the lobe is zero and the direction does not matter.
     """
-    below = refracted_cosine.py_func(light[2], ratio)
+    below = _cosine_below(light[2], ratio)
     return np.array([ratio * light[0], ratio * light[1], below]) if below > 0.0 else light
 
 

@@ -1,7 +1,13 @@
-"""A target in words: what is asked for, and that it was not reached."""
+"""A target in words: what is asked for, how far it is, and that it was not reached."""
 
+import numpy as np
+
+from ...accuracy import norm, paths_for
+from ...engine.estimate import COMPONENT_OF
 from ...scene.model import LIMITS
 from .. import text
+from . import accuracy
+from .trend import trend
 
 
 def limits(simulation):
@@ -41,13 +47,38 @@ def asked(simulation):
     return ", ".join(filter(None, [f"target: {simulation.target}", limits(simulation)]))
 
 
-def shortfall(simulation):
+def far(simulation, outlook):
+    """Say what a target still takes.
+
+    Parameters
+    ----------
+    simulation : goniosim.scene.Simulation
+    outlook : goniosim.engine.outlook.Outlook
+
+    Returns
+    -------
+    str
+        One line.
+    """
+    names = " and ".join(COMPONENT_OF[side] for side in outlook.sides)
+    at = f"{names} is at {100.0 * outlook.error:.2g} % after {text.count(outlook.paths)} rays per direction"
+    takes = f"the target of {simulation.target} takes about {_paths_and_time(outlook.needed, outlook.seconds)} more"
+    return f"{at}; {takes}" + (f", beyond the limits: {limits(simulation)}" if outlook.is_cut else "")
+
+
+def _paths_and_time(paths, seconds):
+    return f"{text.count(float(f'{paths:.1g}'))} rays per direction and {text.duration(seconds)}"
+
+
+def shortfall(simulation, result=None):
     """Say that a target was not reached.
 
     Parameters
     ----------
     simulation : goniosim.scene.Simulation
         Of a result whose ``target_reached`` is False.
+    result : goniosim.result.Result, optional
+        That result, to tell what the target would take.
 
     Returns
     -------
@@ -59,4 +90,30 @@ def shortfall(simulation):
     remedy = f"raise {' or '.join(names)}, or ask for less" if names else "ask for less"
     if simulation.estimator == "operator":
         remedy += ", or leave the estimator to auto: what nodes may be off by limits this one"
-    return f"the target of {simulation.target} was not reached{within}; the result is kept: {remedy}"
+    price = "" if result is None else _price(simulation.target, result)
+    return f"the target of {simulation.target} was not reached{within}{price}; the result is kept: {remedy}"
+
+
+def _price(target, result):
+    """What the component takes that is furthest from a target; nothing where that is not known."""
+    found = []
+    for name in (name for name, component in result.components.items() if component.sampled):
+        _, bounds = accuracy.errors(result, name, target.of)
+        worst, course = int(np.argmax(bounds)), trend(result, name)
+        off = _off(result, name, worst)
+        paths = paths_for(target.relative_error, bounds[worst], off, course.rays, course.slope)
+        found.append((paths, course.fixed + course.per_ray * paths, bounds[worst]))
+    paths, seconds, held = max(found, default=(0.0, 0.0, 0.0))
+    if not held > target.relative_error or not 0.0 < paths < np.inf:
+        return ""
+    return f" (it is at {100.0 * held:.2g} %, and takes about {_paths_and_time(paths, seconds)} in all)"
+
+
+def _off(result, name, m):
+    """What nodes may be off by, relative to the slice."""
+    component = result.components[name]
+    if component.node_bias is None:
+        return 0.0
+    size = np.where(result.cells.valid[m], result.cells.projected_solid_angle[m], 0.0)
+    whole = float(norm(component.energy[m], size).mean())
+    return component.node_bias[m] / whole if whole > 0.0 else 0.0

@@ -4,11 +4,9 @@ As in `goniosim.report.cost.fit`, time grows as p + c N with the number of light
 the last two checkpoints are all there is.
 """
 
-import math
 from dataclasses import dataclass
 
-# Of independent paths; and of a lattice, as far as one may hope.
-INDEPENDENT, FASTEST = 0.5, 1.0
+from ...accuracy import fall
 
 
 @dataclass(frozen=True)
@@ -61,13 +59,11 @@ def trend(result, name):
     Trend
     """
     rays, seconds, noise = result.cost.rays.mean(axis=0), result.cost.elapsed, result.cost.noise(name)
-    fixed, per_ray, slope = 0.0, seconds[-1] / max(rays[-1], 1.0), INDEPENDENT
+    fixed, per_ray = 0.0, seconds[-1] / max(rays[-1], 1.0)
     grown = len(rays) > 1 and rays[-1] > rays[-2] > 0.0
     if grown:
         per_ray = min((seconds[-1] - seconds[-2]) / (rays[-1] - rays[-2]), per_ray)
         fixed = seconds[-1] - per_ray * rays[-1]
     independent = all(each == "analog" for each in result.components[name].estimator)
-    if grown and not independent and noise[-2] > noise[-1] > 0.0:
-        slope = math.log(noise[-2] / noise[-1]) / math.log(rays[-1] / rays[-2])
-    slope = min(max(slope, INDEPENDENT), FASTEST)
+    slope = fall(rays, noise, independent)
     return Trend(float(rays[-1]), float(fixed), float(per_ray), slope, not (grown or independent))

@@ -1,0 +1,118 @@
+"""The table of hard cases: as text, as JSON, and as Markdown."""
+
+import difflib
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from typing import Any
+
+from ..errors import ConfigError
+from ..report.text import counted, duration, table
+from .catalogue import CASES, Case
+from .check import Check
+from .running import Outcome
+
+HEADER = ("checked", "expected", "got", "deviation", "verdict")
+# Wider columns are not lined up: one long message would push everything aside.
+WIDEST = 56
+
+
+def chosen(names: Sequence[str]) -> list[Case]:
+    """Return the cases of those names, or all of them if there are none.
+
+    Raises
+    ------
+    goniosim.errors.ConfigError
+        There is no such case; one line for each name.
+    """
+    unknown = [name for name in names if name not in CASES]
+    if unknown:
+        raise ConfigError([_unknown(name) for name in unknown])
+    return [case for name, case in CASES.items() if not names or name in names]
+
+
+def listing(cases: Iterable[Case]) -> str:
+    """Lay out names and titles by topic."""
+    lines: list[str] = []
+    for topic, group in groupby(cases, key=lambda case: case.topic):
+        members = list(group)
+        width = max(len(case.name) for case in members)
+        lines += [*([""] if lines else []), topic, *(f"  {case.name.ljust(width)}   {case.title}" for case in members)]
+    return "\n".join(lines)
+
+
+def case_text(outcome: Outcome) -> str:
+    """Lay out what became of one case."""
+    rows = [tuple(_short(text) for text in _cells(check)) for check in outcome.checks]
+    head = f"{outcome.case.name}   {outcome.case.title} ({duration(outcome.seconds)})"
+    return "\n".join([head, *table(HEADER, rows)]) + "\n"
+
+
+def verdict(outcomes: Sequence[Outcome]) -> str:
+    """Sum up in one sentence, the same on every machine, and name the cases that fail."""
+    failed = [outcome.case.name for outcome in outcomes if not outcome.holds]
+    what = f"{counted(len(outcomes), 'case')}, {counted(sum(len(each.checks) for each in outcomes), 'check')}"
+    return f"{what}: " + (f"{len(failed)} failed: {', '.join(failed)}" if failed else "all hold")
+
+
+def rows(outcomes: Iterable[Outcome]) -> list[dict[str, Any]]:
+    """Return a mapping for each check, for JSON."""
+    return [
+        {
+            "case": outcome.case.name,
+            "checked": check.checked,
+            "expected": check.expected,
+            "got": check.got,
+            # What has no number in JSON is told by the verdict.
+            "deviation": check.deviation if check.deviation is not None and check.deviation < 1e300 else None,
+            "unit": check.unit,
+            "limit": check.limit,
+            "verdict": _verdict(check),
+        }
+        for outcome in outcomes
+        for check in outcome.checks
+    ]
+
+
+def markdown(outcomes: Sequence[Outcome]) -> str:
+    """Write the page of the documentation."""
+    lines = [
+        "# Hard cases",
+        "",
+        "Scenes at the edges of what can be described, each held against what is exactly known of it. Written by",
+        "`goniosim hard -o docs/hard_cases.md`, which checks the same on any machine; `goniosim hard NAME` checks one.",
+        "The scenes stand in `configs/hard`. Where several numbers are compared, the table tells the one that is",
+        "furthest off. A right number is more than 6 standard errors off in 2e-9 of all seeds if it is normally",
+        "distributed, in 1e-6 if its error comes from 32 replicates; seeds are fixed.",
+        "",
+        f"{verdict(outcomes)}.",
+    ]
+    for topic, group in groupby(outcomes, key=lambda outcome: outcome.case.topic):
+        lines += ["", f"## {topic}"]
+        for outcome in group:
+            lines += ["", f"### {outcome.case.name}", "", f"{outcome.case.title} {outcome.case.why}", ""]
+            lines += [_line(HEADER), _line("---" for _ in HEADER)]
+            lines += [_line(_cells(check)) for check in outcome.checks]
+    return "\n".join(lines) + "\n"
+
+
+def _cells(check: Check) -> tuple[str, str, str, str, str]:
+    far = "" if check.deviation is None else f"{check.deviation:.2g} {check.unit} of {check.limit:g}"
+    return check.checked, check.expected, check.got, far, _verdict(check)
+
+
+def _verdict(check: Check) -> str:
+    return "holds" if check.holds else "fails"
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
+
+
+def _line(cells: Iterable[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def _unknown(name: str) -> str:
+    near = difflib.get_close_matches(name, CASES, n=1)
+    remedy = f"did you mean {near[0]}?" if near else "see goniosim hard --list"
+    return f"{name}: no hard case has this name; {remedy}"
