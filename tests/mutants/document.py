@@ -8,8 +8,8 @@ _HEAD = """\
 # Mutants
 
 A suite of tests is worth what it catches. `make mutants` breaks goniosim on purpose: each of the {count} bugs below is
-put into a copy of the source by itself, and a test of the suite has to fail at an assertion. It writes this page when
-all of them were tried.
+put into a copy of the source by itself, and a test of the suite has to find it: an assertion fails, or goniosim says
+what the test does not expect. Code that merely crashes does not count. It writes this page when all of them were tried.
 
 `make mutants LIST=1` prints the list; `make mutants ONLY=name` tries one, or those that match a pattern (`ONLY='g1-*'`
 or `ONLY='store/*'`). They stand in [tests/mutants](../tests/mutants), a file for each room.

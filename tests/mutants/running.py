@@ -14,8 +14,9 @@ from .compiled import take_over
 
 # A mutant may make the walk endless.
 LIMIT = 900.0
-# How the message of a test begins that looked at a number and found it wrong. All else is broken code.
-_ASSERTIONS = ("assert", "AssertionError", "Failed", "ExceptionGroup: Hypothesis")
+# How the message of a test begins that found something wrong, or to which goniosim said something else than expected.
+# All else is broken code.
+_FOUND = ("assert", "AssertionError", "Failed", "ExceptionGroup: Hypothesis", "goniosim.errors.")
 _WHOSE = """
 import goniosim, goniosim_cli
 from goniosim._jit import CACHE_FOLDER
@@ -33,7 +34,7 @@ class Verdict:
     passed : bool
         All of them, and there were some.
     caught_by : str or None
-        The first test of which an assertion failed.
+        The first test that found something wrong.
     seconds : float
     output : str
     """
@@ -128,9 +129,9 @@ class Copy:
 
 
 def _first_failure(report):
-    """The first test with an assertion that failed: ``file::name``; None if there is none."""
+    """The first test that found something wrong: ``file::name``; None if there is none."""
     for case in ElementTree.parse(report).iter("testcase"):
         for failure in case.iter("failure"):
-            if failure.get("message", "").startswith(_ASSERTIONS):
+            if failure.get("message", "").startswith(_FOUND):
                 return f"{case.get('classname').replace('.', '/')}.py::{case.get('name')}"
     return None
