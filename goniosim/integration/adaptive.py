@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .division import ALL_TOLD, MOST_PARTS, UNSEEN_PEAK, divide, whole_cells
-from .rule import Rule, evaluate
+from .rule import Rule, evaluate, unseen
 
 # Two to four times as fine each: no lobe that the coordinates can tell from a Dirac needs as many.
 MAX_LEVELS = 64
@@ -99,15 +99,16 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
     exhausted = np.zeros(n, bool)
     spent = np.zeros(n, np.int64)
     rectangles, owner, copies = whole_cells(grid, numbers)
-    whole, bends = evaluate(density, grid, rule, rectangles, pool)
+    whole, bends, _ = evaluate(density, grid, rule, rectangles, pool)
     square = np.zeros(len(rectangles), bool)
     for level in range(MAX_LEVELS):
         parts = np.empty((MOST_PARTS * len(rectangles), 4))
         parent = np.empty(len(parts), np.int64)
+        quarter = np.empty(len(parts), np.int8)
         premature = np.empty(len(rectangles), np.int8)
-        count = divide(grid.code, light, peak, rectangles, bends, square, premature, parts, parent)
-        parts, parent = parts[:count], parent[:count]
-        values, part_bends = evaluate(density, grid, rule, parts, pool)
+        count = divide(grid.code, light, peak, rectangles, bends, square, premature, parts, parent, quarter)
+        parts, parent, quarter = parts[:count], parent[:count], quarter[:count]
+        values, part_bends, told = evaluate(density, grid, rule, parts, pool, quarter)
         sums = _added(values, parent, len(rectangles))
         difference = np.abs(sums - whole)
         estimate = settled_energy + _added(sums, owner, n)
@@ -115,7 +116,13 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         close = (difference <= tolerance).all(axis=0)
         fine = close & (premature == ALL_TOLD)
         spent += np.bincount(owner[parent], minlength=n)
-        given_up = ~fine & ((spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1))
+        last = (spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1)
+        (first,) = np.nonzero((quarter == 0) & (fine | last)[parent])
+        ending = parent[first]
+        strips = unseen(density, grid, rule, rectangles[ending], told, first, pool)
+        fine[ending] &= (strips <= tolerance[:, ending]).all(axis=0)
+        difference[:, ending] = np.maximum(difference[:, ending], strips)
+        given_up = ~fine & last
         exhausted[owner[given_up]] = True
         error[:, owner[given_up & (premature == UNSEEN_PEAK)]] = np.inf
         done = fine | given_up

@@ -6,6 +6,7 @@ import numpy as np
 
 from .._jit import kernel, stage
 from ..slices import horizon_azimuth, horizon_coordinate, view_direction, view_row
+from .border import LATTICE, TOLD, foretell, surprise, weights_of
 from .pool import BLOCK
 
 # Columns of a table of rectangles, in radians: lower row coordinate and azimuth, and the two widths. The
@@ -27,6 +28,10 @@ class Rule:
     bend : ndarray, shape (n,)
         Functional of the values at the nodes that is zero for all polynomials of degree n - 2, and at
         most the largest value: how much a function bends along one side.
+    border : ndarray, shape (4, TOLD, n * n)
+        Of `border.weights_of`.
+    unseen : float
+        Share of a rectangle between its edge and the nearest nodes of its quarters.
     """
 
     def __init__(self, n):
@@ -36,9 +41,11 @@ class Rule:
         # The divided difference of the highest order.
         difference = np.array([1.0 / np.prod(x[i] - np.delete(x, i)) for i in range(n)])
         self.bend = difference / np.abs(difference).sum()
+        self.border = weights_of(self.nodes)
+        self.unseen = 0.5 * float(self.nodes[0])
 
 
-def evaluate(density, grid, rule, rectangles, pool):
+def evaluate(density, grid, rule, rectangles, pool, quarter=None):
     """Apply a rule to rectangles of a slice.
 
     Parameters
@@ -48,6 +55,8 @@ def evaluate(density, grid, rule, rectangles, pool):
     rule : Rule
     rectangles : ndarray, shape (n, 4)
     pool : Pool
+    quarter : ndarray of int, shape (n,), optional
+        Which quarters of the rectangles before these are, or -1; by default, none is.
 
     Returns
     -------
@@ -55,10 +64,13 @@ def evaluate(density, grid, rule, rectangles, pool):
     bends : ndarray, shape (2, n)
         How much the integrand bends along u and along psi, relative to its mean, in the channel where it
         bends most.
+    told : ndarray, shape (n, channels, TOLD), or None
+        Of `border.foretell`, where there are quarters.
     """
     per_rectangle = len(rule.nodes) ** 2
     energy = np.empty((density.channels, len(rectangles)))
     bends = np.empty((2, len(rectangles)))
+    told = None if quarter is None else np.empty((len(rectangles), density.channels, TOLD))
     step = max(1, BLOCK // per_rectangle)
     light = grid.light
 
@@ -69,9 +81,42 @@ def evaluate(density, grid, rule, rectangles, pool):
         fill(grid.code, light, part, rule.nodes, x, y, z, weight)
         density.kernel(density.tables, density.light, x, y, z, values)
         add_up(values, weight, rule.weights, rule.bend, start, energy, bends)
+        if quarter is not None:
+            foretell(values, weight, rule.border, quarter, start, told)
 
     pool.in_blocks(work, len(rectangles), step)
-    return energy, bends
+    return energy, bends, told
+
+
+def unseen(density, grid, rule, rectangles, told, first, pool):
+    """Energy that the nodes of the quarters of rectangles may not see, at most, in a strip along one side.
+
+    Parameters
+    ----------
+    density, grid, rule, rectangles, pool
+        As in `evaluate`.
+    told : ndarray, shape (parts, channels, TOLD)
+        Of `evaluate`.
+    first : ndarray of int, shape (n,)
+        The first quarter of each rectangle.
+
+    Returns
+    -------
+    ndarray, shape (channels, n)
+    """
+    largest = np.empty((density.channels, len(rectangles)))
+    step = max(1, BLOCK // len(LATTICE) ** 2)
+
+    def work(start):
+        part = rectangles[start : start + step]
+        x, y, z, weight = np.empty((4, len(part) * len(LATTICE) ** 2))
+        values = np.empty((len(largest), len(x)))
+        fill(grid.code, grid.light, part, LATTICE, x, y, z, weight)
+        density.kernel(density.tables, density.light, x, y, z, values)
+        surprise(values, weight, told, first, start, largest)
+
+    pool.in_blocks(work, len(rectangles), step)
+    return rule.unseen * largest
 
 
 @kernel
