@@ -5,16 +5,22 @@ of them miss: rules on the whole and on its parts then agree, and are wrong alik
 of a rectangle foretell the integrand at its corners and in the middle of its sides: all nodes together, and alone those
 of the quarter in whose corner the point lies. The former are right to what the rules differ by if the integrand is
 smooth, the latter are if it has a kink elsewhere. If both are wrong, then by what the nodes do not see.
+
+The integrand is taken over the row coordinate: it vanishes at the pole of a slice, whatever the density does there.
 """
 
 import numpy as np
 
 from .._jit import kernel
+from .pool import BLOCK
+from .rectangle import D_U, U, fill
 
 # Corners and middles of the sides, along each side of a rectangle: all points of the lattice but the centre.
 LATTICE = np.array([0.0, 0.5, 1.0])
 _BORDER = np.array([0, 1, 2, 3, 5, 6, 7, 8])
 POINTS = len(_BORDER)
+# Row coordinate at which rectangles begin that begin at the pole, where nothing can be told.
+_BESIDE_THE_POLE = 1e-12
 # What a quarter adds at all points, and what it foretells alone in its four corners.
 TOLD = POINTS + 4
 # Of each point the quarters in whose corner it lies, one or two, and which corner that is.
@@ -54,13 +60,15 @@ def _extrapolation(nodes, at):
 
 
 @kernel
-def foretell(values, weight, weights, quarter, start, told):
+def foretell(values, weight, parts, nodes, weights, quarter, start, told):
     """What each quarter foretells of the integrand, from the values at all nodes.
 
     Parameters
     ----------
     values : ndarray, shape (channels, m * n * n)
     weight : ndarray, shape (m * n * n,)
+    parts : ndarray, shape (parts, 4)
+    nodes : ndarray, shape (n,)
     weights : ndarray, shape (4, TOLD, n * n)
     quarter : ndarray of int, shape (parts,)
         0 to 3, or -1 of a part that is not a quarter.
@@ -68,15 +76,22 @@ def foretell(values, weight, weights, quarter, start, told):
         Number of the first part.
     told : ndarray, shape (parts, channels, TOLD), out
     """
-    nodes = weights.shape[2]
-    f = np.empty(nodes)
-    for k in range(weight.shape[0] // nodes):
-        if quarter[start + k] < 0:
+    n = nodes.shape[0]
+    count = n * n
+    f = np.empty(count)
+    for k in range(weight.shape[0] // count):
+        place = quarter[start + k]
+        if place < 0:
             continue
-        table = weights[quarter[start + k]]
+        table = weights[place]
+        low = parts[start + k, U]
+        high = low + parts[start + k, D_U]
+        middle = high if place < 2 else low
         for c in range(values.shape[0]):
-            for i in range(nodes):
-                f[i] = values[c, k * nodes + i] * weight[k * nodes + i]
+            for i in range(n):
+                scale = middle / (low + (high - low) * nodes[i])
+                for j in range(i * n, (i + 1) * n):
+                    f[j] = values[c, k * count + j] * weight[k * count + j] * scale
             row = told[start + k, c]
             # Four at a time: one sum alone would wait for itself.
             for p in range(0, TOLD, 4):
@@ -84,7 +99,7 @@ def foretell(values, weight, weights, quarter, start, told):
                 b = 0.0
                 d = 0.0
                 e = 0.0
-                for i in range(nodes):
+                for i in range(count):
                     a += table[p, i] * f[i]
                     b += table[p + 1, i] * f[i]
                     d += table[p + 2, i] * f[i]
@@ -95,8 +110,41 @@ def foretell(values, weight, weights, quarter, start, told):
                 row[p + 3] = e
 
 
+def unseen(density, grid, rule, rectangles, told, first, pool):
+    """Energy that the nodes of the quarters of rectangles may not see, at most, in a strip along one side.
+
+    Parameters
+    ----------
+    density, grid, rule, rectangles, pool
+        As in `rule.evaluate`.
+    told : ndarray, shape (parts, channels, TOLD)
+        Of `rule.evaluate`.
+    first : ndarray of int, shape (n,)
+        The first quarter of each rectangle.
+
+    Returns
+    -------
+    ndarray, shape (channels, n)
+    """
+    # Not quite at the pole, where nothing can be told.
+    rectangles = np.maximum(rectangles, [_BESIDE_THE_POLE, 0.0, 0.0, 0.0])
+    largest = np.empty((density.channels, len(rectangles)))
+    step = max(1, BLOCK // 9)
+
+    def work(start):
+        part = rectangles[start : start + step]
+        x, y, z, weight = np.empty((4, len(part) * 9))
+        values = np.empty((len(largest), len(x)))
+        fill(grid.code, grid.light, part, LATTICE, x, y, z, weight)
+        density.kernel(density.tables, density.light, x, y, z, values)
+        _surprise(values, weight, rectangles, told, first, start, largest)
+
+    pool.in_blocks(work, len(rectangles), step)
+    return rule.unseen * largest
+
+
 @kernel
-def surprise(values, weight, told, first, start, out):
+def _surprise(values, weight, rectangles, told, first, start, out):
     """The least wrong of what was foretold, at the point of the border where that is most.
 
     Parameters
@@ -104,20 +152,24 @@ def surprise(values, weight, told, first, start, out):
     values : ndarray, shape (channels, m * 9)
         At the lattices of m rectangles.
     weight : ndarray, shape (m * 9,)
+    rectangles : ndarray, shape (n, 4)
     told : ndarray, shape (parts, channels, TOLD)
     first : ndarray of int, shape (n,)
-        The first quarters of all rectangles.
+        The first quarter of each rectangle.
     start : int
         Number of the first rectangle.
     out : ndarray, shape (channels, n)
     """
     for k in range(weight.shape[0] // 9):
         at = first[start + k]
+        low = rectangles[start + k, U]
+        height = rectangles[start + k, D_U]
         for c in range(values.shape[0]):
             largest = 0.0
             for p in range(POINTS):
                 here = 9 * k + _BORDER[p]
-                f = values[c, here] * weight[here]
+                scale = (low + 0.5 * height) / (low + height * LATTICE[_BORDER[p] // 3])
+                f = values[c, here] * weight[here] * scale
                 joint = told[at, c, p] + told[at + 1, c, p] + told[at + 2, c, p] + told[at + 3, c, p]
                 one = told[at + _QUARTERS[p, 0], c, POINTS + _CORNERS[p, 0]]
                 other = told[at + _QUARTERS[p, 1], c, POINTS + _CORNERS[p, 1]]

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._jit import kernel, scalar, stage
 from ..slices import horizon_azimuth, horizon_coordinate
-from .rule import D_PSI, D_U, PSI, U
+from .rectangle import D_PSI, D_U, PSI, U
 
 # Parts of one rectangle at most: four, each perhaps cut in two by the horizon.
 MOST_PARTS = 8

@@ -1,18 +1,12 @@
-"""Gauss-Legendre rules on rectangles of a slice, cut where the horizon leaves them."""
-
-import math
+"""Gauss-Legendre rules on rectangles of a slice."""
 
 import numpy as np
 
-from .._jit import kernel, stage
-from ..slices import horizon_azimuth, horizon_coordinate, view_direction, view_row
-from .border import LATTICE, TOLD, foretell, surprise, weights_of
+from .._jit import kernel
+from .border import TOLD, foretell, weights_of
 from .pool import BLOCK
+from .rectangle import fill
 
-# Columns of a table of rectangles, in radians: lower row coordinate and azimuth, and the two widths. The
-# azimuth is measured from the mirror direction, pi - phi: there lobes can be needles narrower than the
-# spacing of the numbers around pi.
-U, PSI, D_U, D_PSI = range(4)
 
 
 class Rule:
@@ -82,86 +76,10 @@ def evaluate(density, grid, rule, rectangles, pool, quarter=None):
         density.kernel(density.tables, density.light, x, y, z, values)
         add_up(values, weight, rule.weights, rule.bend, start, energy, bends)
         if quarter is not None:
-            foretell(values, weight, rule.border, quarter, start, told)
+            foretell(values, weight, rectangles, rule.nodes, rule.border, quarter, start, told)
 
     pool.in_blocks(work, len(rectangles), step)
     return energy, bends, told
-
-
-def unseen(density, grid, rule, rectangles, told, first, pool):
-    """Energy that the nodes of the quarters of rectangles may not see, at most, in a strip along one side.
-
-    Parameters
-    ----------
-    density, grid, rule, rectangles, pool
-        As in `evaluate`.
-    told : ndarray, shape (parts, channels, TOLD)
-        Of `evaluate`.
-    first : ndarray of int, shape (n,)
-        The first quarter of each rectangle.
-
-    Returns
-    -------
-    ndarray, shape (channels, n)
-    """
-    largest = np.empty((density.channels, len(rectangles)))
-    step = max(1, BLOCK // len(LATTICE) ** 2)
-
-    def work(start):
-        part = rectangles[start : start + step]
-        x, y, z, weight = np.empty((4, len(part) * len(LATTICE) ** 2))
-        values = np.empty((len(largest), len(x)))
-        fill(grid.code, grid.light, part, LATTICE, x, y, z, weight)
-        density.kernel(density.tables, density.light, x, y, z, values)
-        surprise(values, weight, told, first, start, largest)
-
-    pool.in_blocks(work, len(rectangles), step)
-    return rule.unseen * largest
-
-
-@kernel
-def fill(code, light, rectangles, nodes, x, y, z, weight):
-    """View directions at the nodes of rectangles, and cos(theta_v) d omega_v over the weights of the rule."""
-    lx = light[0]
-    ly = light[1]
-    lz = light[2]
-    n = nodes.shape[0]
-    cosines = np.empty(n)
-    sines = np.empty(n)
-    at = 0
-    for k in range(rectangles.shape[0]):
-        u = rectangles[k, U]
-        psi = rectangles[k, PSI]
-        d_u = rectangles[k, D_U]
-        d_psi = rectangles[k, D_PSI]
-        is_cut = horizon_coordinate(code, math.pi - psi, lx, lz) < u + d_u
-        width = d_psi
-        _turn(psi, width, nodes, cosines, sines)
-        for i in range(n):
-            here = u + d_u * nodes[i]
-            sine, cosine, row_factor = view_row(code, here)
-            if is_cut:
-                # Only the azimuths above the horizon, which would be a kink in the integrand.
-                hidden = min(max(math.pi - horizon_azimuth(code, here, lx, lz) - psi, 0.0), d_psi)
-                width = d_psi - hidden
-                _turn(psi + hidden, width, nodes, cosines, sines)
-            area = d_u * width * row_factor
-            for j in range(n):
-                vx, vy, vz, factor = view_direction(code, sine, cosine, cosines[j], sines[j], lx, ly, lz)
-                x[at] = vx
-                y[at] = vy
-                # Rounding must not hide what lies in the horizon.
-                z[at] = max(vz, 1e-12)
-                weight[at] = area * factor * max(vz, 0.0)
-                at += 1
-
-
-@stage
-def _turn(psi, width, nodes, cosines, sines):
-    for j in range(nodes.shape[0]):
-        azimuth = psi + width * nodes[j]
-        cosines[j] = -math.cos(azimuth)
-        sines[j] = math.sin(azimuth)
 
 
 @kernel
