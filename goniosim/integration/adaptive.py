@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .border import unseen
+from .border import retell, unseen
 from .division import ALL_TOLD, MOST_PARTS, UNSEEN_PEAK, divide, whole_cells
 from .rule import Rule, evaluate
 
@@ -120,9 +120,9 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         fine = close & (premature == ALL_TOLD)
         spent += np.bincount(owner[parent], minlength=n)
         last = (spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1)
-        (first,) = np.nonzero((quarter == 0) & (fine | last)[parent])
-        ending = parent[first]
-        strips = unseen(density, grid, rule, rectangles[ending], told, first, pool)
+        ending, strips = _strips(
+            density, grid, pool, rule, rectangles, (fine | last) & (premature == ALL_TOLD), parent, quarter, told
+        )
         fine[ending] &= (strips <= SPARED * tolerance[:, ending]).all(axis=0)
         difference[:, ending] = np.maximum(difference[:, ending], strips)
         given_up = ~fine & last
@@ -141,6 +141,21 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         square = close[parent[again]]
         owner = owner[parent[again]]
     return settled_energy * copies, error * copies, exhausted
+
+
+def _strips(density, grid, pool, rule, rectangles, ending, parent, quarter, told):
+    """Numbers of the rectangles marked as ``ending``, and what no node sees in them."""
+    (first,) = np.nonzero((quarter == 0) & ending[parent])
+    whole = parent[first]
+    cut = ending.copy()
+    cut[whole] = False
+    (cut,) = np.nonzero(cut)
+    strips = unseen(density, grid, rule, rectangles[whole], told, first, pool)
+    if len(cut):
+        told = retell(density, grid, rule, rectangles[cut], pool)
+        more = unseen(density, grid, rule, rectangles[cut], told, np.arange(0, len(told), 4), pool)
+        strips = np.concatenate([strips, more], axis=1)
+    return np.concatenate([whole, cut]), strips
 
 
 def _added(values, group, n):

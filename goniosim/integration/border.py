@@ -110,6 +110,45 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
                 row[p + 3] = e
 
 
+def retell(density, grid, rule, rectangles, pool):
+    """What the quarters foretell of what the horizon leaves of rectangles: their parts are others.
+
+    Parameters
+    ----------
+    density, grid, rule, rectangles, pool
+        As in `rule.evaluate`.
+
+    Returns
+    -------
+    ndarray, shape (4 * n, channels, TOLD)
+    """
+    told = np.empty((4 * len(rectangles), density.channels, TOLD))
+    both = np.concatenate([0.5 * rule.nodes, 0.5 + 0.5 * rule.nodes])
+    n = len(rule.nodes)
+    low, high = rectangles.copy(), rectangles.copy()
+    low[:, D_U] *= 0.5
+    high[:, D_U] *= 0.5
+    high[:, U] += high[:, D_U]
+    parts = np.stack([low, low, high, high], axis=1).reshape(-1, 4)
+    quarter = np.tile(np.arange(4, dtype=np.int8), len(rectangles))
+    step = max(1, BLOCK // (4 * n * n))
+
+    def by_quarter(array, count):
+        return np.moveaxis(array.reshape(-1, count, 2, n, 2, n), 4, 3).reshape(len(array), -1)
+
+    def work(start):
+        part = rectangles[start : start + step]
+        x, y, z, weight = np.empty((4, len(part) * 4 * n * n))
+        values = np.empty((density.channels, len(x)))
+        fill(grid.code, grid.light, part, both, x, y, z, weight)
+        density.kernel(density.tables, density.light, x, y, z, values)
+        values, weight = by_quarter(values, len(part)), 0.25 * by_quarter(weight[None], len(part))[0]
+        foretell(values, weight, parts, rule.nodes, rule.border, quarter, 4 * start, told)
+
+    pool.in_blocks(work, len(rectangles), step)
+    return told
+
+
 def unseen(density, grid, rule, rectangles, told, first, pool):
     """Energy that the nodes of the quarters of rectangles may not see, at most, in a strip along one side.
 

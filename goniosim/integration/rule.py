@@ -8,7 +8,6 @@ from .pool import BLOCK
 from .rectangle import fill
 
 
-
 class Rule:
     """A product rule of n x n nodes on the unit square.
 

@@ -6,8 +6,8 @@ goniosim. Both slices meet the kink l.h = c, and the half slice the horizon, on 
     sin(theta_l) sin(t) cos(phi) + cos(theta_l) cos(t) = C
 
 with C = 2 c^2 - 1 and t = theta_v (classic), C = c and t = theta_h (half), and C = 0, t = 2 theta_h (horizon). So all
-points where they cross the edges of cells are known. Between them, panels are mapped by sin^2, under which roots at both
-ends become smooth, and Gauss-Legendre rules converge as fast as for smooth integrands.
+points where they cross the edges of cells are known. Between them, panels are mapped by sin^2, under which roots at
+both ends become smooth, and Gauss-Legendre rules converge as fast as for smooth integrands.
 """
 
 import math
