@@ -1,8 +1,8 @@
 """Adaptive integration over cells, to a stated tolerance.
 
 All cells are divided together, level by level. A part is settled once the sum of the rules on its own parts
-agrees with the rule on the whole, and it does not hold the peak of a lobe that is too narrow to be seen by
-the rule: around a peak, cells are divided down to the width of the lobe, however narrow, and across it only.
+agrees with the rule on the whole, the nodes foretell what is at its border, where a kink may hide from them, and it
+does not hold the peak of a lobe that is too narrow to be seen by the rule: around a peak, cells are divided down to the width of the lobe, however narrow, and across it only.
 """
 
 from dataclasses import dataclass
@@ -35,8 +35,8 @@ class Adaptive:
     energy : ndarray, shape (channels, n)
         Fraction of the incident flux.
     error : ndarray, shape (channels, n)
-        Sum of the differences of successive rules: as a rule far above the true error. Infinite where a lobe is
-        too narrow to be seen.
+        Sum of the differences of successive rules, or of what they may not see at a border: as a rule far above the
+        true error. Infinite where a lobe is too narrow to be seen.
     exhausted : ndarray of bool, shape (n,)
         Cells that were given up at the last level, short of the tolerance.
     """
@@ -120,9 +120,8 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         fine = close & (premature == ALL_TOLD)
         spent += np.bincount(owner[parent], minlength=n)
         last = (spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1)
-        ending, strips = _strips(
-            density, grid, pool, rule, rectangles, (fine | last) & (premature == ALL_TOLD), parent, quarter, told
-        )
+        ending = (fine | last) & (premature == ALL_TOLD)
+        ending, strips = _strips(density, grid, pool, rule, rectangles, ending, parent, quarter, told)
         fine[ending] &= (strips <= SPARED * tolerance[:, ending]).all(axis=0)
         difference[:, ending] = np.maximum(difference[:, ending], strips)
         given_up = ~fine & last
@@ -137,7 +136,7 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         if n > 1 and np.count_nonzero(again) > MOST_PENDING:
             return None
         rectangles, whole, bends = parts[again], values[:, again], part_bends[:, again]
-        # Divided along one side and close: the other side is still to be tried.
+        # Divided along one side and close, the other side is still to be tried; and quarters tell of their borders.
         square = close[parent[again]]
         owner = owner[parent[again]]
     return settled_energy * copies, error * copies, exhausted

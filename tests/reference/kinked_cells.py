@@ -1,7 +1,7 @@
 """Integrals over the cells of a slice of a flux density with a kink where the facet sees the light at a given cosine.
 
-For facets beyond the critical angle of a rarer medium, say: there a reflectance rises with infinite slope. Independent of
-goniosim. Both slices meet the kink l.h = c, and the half slice the horizon, on curves
+For facets beyond the critical angle of a rarer medium, say: there a reflectance rises with infinite slope. Nothing here
+uses goniosim. Both slices meet the kink l.h = c, and the half slice the horizon, on curves
 
     sin(theta_l) sin(t) cos(phi) + cos(theta_l) cos(t) = C
 
