@@ -1,8 +1,9 @@
 """Adaptive integration over cells, to a stated tolerance.
 
-All cells are divided together, level by level. A part is settled once the sum of the rules on its own parts
-agrees with the rule on the whole, the nodes foretell what is at its border, where a kink may hide from them, and it
-does not hold the peak of a lobe that is too narrow to be seen by the rule: around a peak, cells are divided down to the width of the lobe, however narrow, and across it only.
+All cells are divided together, level by level. A part is settled once the sum of the rules on its own parts agrees
+with the rule on the whole, the nodes foretell what is at its border, where a kink may hide from them, and it does not
+hold the peak of a lobe that is too narrow to be seen by the rule: around a peak, cells are divided down to the width
+of the lobe, however narrow, and across it only.
 """
 
 from dataclasses import dataclass
