@@ -17,7 +17,7 @@ from .layout import EVENTS, STAGES
 from .lobes import FEWER_LATER
 
 # Rounds through the stack, of two events at every interface, that a path may take without becoming one of fewer.
-ROUNDS = 16
+ROUNDS = 32
 # Paths of the pilot, its events between two looks at them, and stages after which it ends.
 _PATHS = 64
 _LOOK = 1 << 12
