@@ -10,13 +10,11 @@ from ..layout import N_LEDGER, WEIGHT
 from ..sorting import LANES
 from ..unit import BATCH, BUDGET, child_key, queue_capacity
 from ..walk import MAX_ROUNDS
+from .effort import CROWD
 from .layout import EVENTS, LEFT, N_SCRATCH, N_STATE, PHASES
 from .numbers import lattice_shifts
 from .walk import split_walk
 
-# Batches in the fullest queue, above which inner interfaces do not branch. From there on no event adds
-# rays, so that this, and what `unit.queue_capacity` says of such traffic, is all that a queue must hold.
-CROWD = 3
 # Children of the key of a replicate.
 _SHIFTS, _PATHS, _CHANCE = 0, 1, 2
 
@@ -48,16 +46,15 @@ class Workspace:
         Facets through which an arrival leaves.
     scales : ndarray, shape (M, queues, D)
         Reciprocals of the weights below which a ray is faint.
-    followed : ndarray, shape (M,)
-        Shares of the light paths that are followed, see `effort`.
+    effort : goniosim.engine.splitting.effort.Effort
     """
 
-    def __init__(self, plan, slots, facets, scales, followed):
+    def __init__(self, plan, slots, facets, scales, effort):
         self.plan = plan
         self.slots = slots
         self.facets = facets
         self.scales = scales
-        self.followed = followed
+        self.effort = effort
         arrays = {name: np.zeros(shape) for name, shape in shapes(plan, int(slots[:, 1].sum())).items()}
         self.queues, self.batch, self.scratch = arrays["queues"], arrays["batch"], arrays["scratch"]
         self.histogram, self.rings = arrays["histogram"], arrays["rings"]
@@ -74,14 +71,15 @@ class Workspace:
         """Make replicates; returns what they cost in events, or None if ``stop`` was set."""
         events = 0
         for key, slices in zip(keys, out, strict=True):
-            expected = size * self.followed[direction]
+            expected = size * self.effort.followed[direction]
             paths = math.ceil(expected)
             if expected < 1.0:
                 lattice_shifts(child_key(key, _CHANCE), self.chance)
                 paths = int(self.chance[0] < expected)
             self.begin(paths)
             lattice_shifts(child_key(key, _SHIFTS), self.shifts)
-            while not self.advance(direction, child_key(key, _PATHS), BUDGET):
+            crowd = self.effort.crowds[direction]
+            while not self.advance(direction, child_key(key, _PATHS), BUDGET, crowd):
                 if stop.is_set():
                     return None
             events += int(self.state[EVENTS])
@@ -97,7 +95,7 @@ class Workspace:
         self.state[LEFT] = size
         self.shifts[:] = 0.0
 
-    def advance(self, direction, key, budget, crowd=CROWD * BATCH):
+    def advance(self, direction, key, budget, crowd):
         """Run about ``budget`` events, and at least one stage; returns whether all paths are through.
 
         Where the fullest queue holds more than ``crowd`` rays, inner interfaces do not branch.
@@ -119,7 +117,7 @@ class Workspace:
         )
         scales, facets = self.scales[direction], self.facets[direction]
         # What is still inside after that is lost, as in the analog walk; paths that take longer are fewer.
-        rounds = int(MAX_ROUNDS * len(self.filled) / self.followed[direction])
+        rounds = int(MAX_ROUNDS * len(self.filled) / self.effort.followed[direction])
         return split_walk(
             plan.tables, scales, facets, crowd, light, key, self.shifts, budget, rounds, self.space, self.ledger, cells
         )
