@@ -1,19 +1,26 @@
 """Error bars of cells that few deposits reach.
 
 The scatter of a handful of replicates says little where only some of them reach a cell: it is too small most of the
-time, and 0 if none did. What is lit so dimly varies little from cell to cell, and neighbours tell. Only the variance
-is mended, never the mean, and only there: elsewhere its neighbours would blur a narrow lobe. Which neighbours are
-lit alike, and are alike in size, the parametrization of the slice tells (`goniosim.slices`).
+time, and 0 if none did. What a deposit brings varies little from cell to cell where there is little light, and
+neighbours tell: the sum of their variances over the sum of their means is the grain g, and a mean m made of such
+grains has the variance g m, as if it were that of m / g deposits. Only the variance is mended, never the mean, and only
+there: elsewhere its neighbours would blur a narrow lobe. Which neighbours are alike, the parametrization of the slice
+tells (`goniosim.slices`).
 """
 
 import numpy as np
 
 # A standard error above this share of the value is not to be trusted by itself.
 _UNCERTAIN = 0.15
+# Between these shares the neighbours decide whether it is above that. Who replaces a scatter for being large keeps the
+# small ones, and states on average less than there is: a quarter of the variance, next to the limit.
+_WELL_KNOWN, _UNKNOWN = 0.08, 0.25
+# Of so many deposits and fewer the mean itself is known too badly to tell the variance: the neighbours' goes in.
+_FEW = 8.0
 
 
 def mended(mean, variance, reach):
-    """Variances, replaced by the mean over the cells around where a cell had few hits, or none.
+    """Variances, replaced by what neighbours tell where a cell had few hits, or none.
 
     Parameters
     ----------
@@ -29,8 +36,14 @@ def mended(mean, variance, reach):
     ndarray
         A new array. At both ends of a row neighbours are mirrored; rows beyond the first and the last are left out.
     """
-    few = (variance > (_UNCERTAIN * mean) ** 2) | (mean == 0.0)
-    return np.where(few, _mean_around(variance, reach), variance)
+    light, scatter = _mean_around(mean, reach), _mean_around(variance, reach)
+    grain = np.divide(scatter, light, out=np.zeros_like(scatter), where=light > 0.0)
+    deposits = np.divide(mean, grain, out=np.zeros_like(mean), where=grain > 0.0)
+    share = deposits**4 / (deposits**4 + _FEW**4)
+    told = share * grain * mean + (1.0 - share) * scatter
+    few = (variance > (_UNKNOWN * mean) ** 2) | (mean == 0.0)
+    doubtful = (variance > (_WELL_KNOWN * mean) ** 2) & (grain > _UNCERTAIN**2 * mean)
+    return np.where(few | doubtful, told, variance)
 
 
 def _mean_around(values, reach):

@@ -7,7 +7,8 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from goniosim.engine.estimators.choose import choose
-from goniosim.engine.layout import N_LEDGER, STAGES
+from goniosim.engine.estimators.split import Split
+from goniosim.engine.layout import DOWN, N_LEDGER, STAGES, UP
 from goniosim.engine.plan import make_plan
 from goniosim.engine.tally import record_length
 from goniosim.engine.unit import Workspace, pilot_key
@@ -24,8 +25,9 @@ GRIDS = [(1, 1), (7, 11), (1, 8), (5, 1), (6, 12), (2, 3), (18, 36), (90, 7)]
 # Which of three numbers the channels take: in the same ones everywhere, so that some channels are alike.
 ALIKE = [(0, 1, 2), (0, 1, 2), (0, 0, 1), (0, 1, 0), (0, 1, 1)]
 
-# Rays of a trial that tells whether light is caught in a stack, and events and stages that few are enough for.
+# Rays of a trial that tells whether a stack takes long, and events and stages that are enough for others.
 TRIED = 128
+TRIED_SPLIT = 64
 MOST_EVENTS = 200_000
 MOST_STAGES = 2000
 
@@ -120,16 +122,26 @@ def applies(scene, estimator):
 
 
 def lingers(scene):
-    """Whether light is caught in the stack for so long that few rays take seconds."""
+    """Whether few rays take seconds: light is caught in the stack, or the split walk branches without end in it."""
     plan = make_plan(parse_scene(scene)).in_one_cell()
-    workspace = Workspace(plan)
+    workspace, ledger = Workspace(plan), np.zeros((N_LEDGER, plan.n_distinct))
     for direction in range(len(plan.theta_deg)):
         cells = workspace.cells(direction, 1, 1, np.zeros((plan.n_slots, record_length(plan.n_distinct))))
         workspace.begin(TRIED)
-        ledger = np.zeros((N_LEDGER, plan.n_distinct))
         if not workspace.advance(direction, pilot_key(direction), MOST_EVENTS, ledger, cells):
             return True
         if workspace.state[STAGES] > MOST_STAGES:
+            return True
+    return scene["simulation"]["estimator"] == "split" and _multiplies(make_plan(parse_scene(scene)))
+
+
+def _multiplies(plan):
+    estimator = Split(plan, tuple(side for side in (UP, DOWN) if plan.slots[side, 1] > 0))
+    estimator.prepare()
+    workspace = estimator.workspace()
+    for direction in range(len(plan.theta_deg)):
+        workspace.begin(TRIED_SPLIT)
+        if not workspace.advance(direction, pilot_key(direction), MOST_EVENTS):
             return True
     return False
 

@@ -140,14 +140,20 @@ def smith_g1(cos_v, alpha):
     return 2.0 * cos_v / (cos_v + np.sqrt(cos_v**2 + alpha**2 * (1.0 - cos_v**2)))
 
 
-def reflection_density(alpha, n, power=1):
+def coin_of(cos_i, n, coin):
+    """Reflectance of a dielectric, times ``coin`` where it is not total."""
+    reflectance = fresnel_dielectric(cos_i, n)
+    return np.where(reflectance < 1.0, np.minimum(1.0, coin * reflectance), 1.0)
+
+
+def reflection_density(alpha, n, power=1, coin=1.0):
     """Direct flux density of one rough interface: D G1 G1 F / (4 cos_l), Walter et al. 2007.
 
     ``n`` is the relative index, real or complex. With visible normals, a ray
     reflected by a conductor carries the weight F G1(v); ``power = 2`` gives the
     density times that weight, whose integral over a cell is the second moment
     of what one ray deposits there. At a dielectric F is a probability and the
-    weight is G1(v) alone.
+    weight is G1(v) alone, and ``coin`` a factor on it.
     """
 
     def density(sin_l, cos_l, x, y, z):
@@ -160,17 +166,17 @@ def reflection_density(alpha, n, power=1):
             fresnel = fresnel_conductor(cos_d, n)
             moment = (fresnel * visible) ** power
         else:
-            moment = fresnel_dielectric(cos_d, n) * visible**power
+            moment = coin_of(cos_d, n, coin) * visible**power
         return ggx(in_plane2 / (hz * hz), alpha) * smith_g1(cos_l, alpha) * moment / (4.0 * cos_l)
 
     return density
 
 
-def transmission_density(alpha, n, power=1):
+def transmission_density(alpha, n, power=1, coin=1.0):
     """Flux density through one rough dielectric interface of relative index ``n`` (not 1).
 
     Eq. 21 of Walter et al. 2007 times the cosine, as flux: without the factor
-    that turns it into radiance. ``power`` as in `reflection_density`.
+    that turns it into radiance. ``power`` and ``coin`` as in `reflection_density`.
     """
 
     def density(sin_l, cos_l, x, y, z):
@@ -183,9 +189,11 @@ def transmission_density(alpha, n, power=1):
         possible = (cos_i > 0.0) & (cos_o > 0.0)
         cos_i, cos_o = np.where(possible, cos_i, 1.0), np.where(possible, cos_o, 0.0)
         jacobian = n * n * cos_o / length2
-        through = 1.0 - fresnel_dielectric(np.minimum(cos_i, 1.0), n)
+        through = 1.0 - coin_of(np.minimum(cos_i, 1.0), n, coin)
         tan2_h = (hx * hx + hy * hy) / np.where(possible, hz * hz, 1.0)
         lit = smith_g1(cos_l, alpha) * cos_i / cos_l
         return ggx(tan2_h, alpha) * lit * jacobian * through * smith_g1(z, alpha) ** power
 
+    # Facets are upright there, and beyond there are none.
+    density.jump = lambda cos_l: cos_l / n
     return density
