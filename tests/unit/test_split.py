@@ -28,7 +28,7 @@ from goniosim.engine.splitting.layout import (
 )
 from goniosim.engine.splitting.lobes import MOST_FACETS, facets_per_arrival
 from goniosim.engine.splitting.numbers import facet_numbers, far_facet
-from goniosim.engine.splitting.workspace import CROWD, Workspace
+from goniosim.engine.splitting.workspace import Workspace
 from goniosim.engine.stages import ROUGH_DIELECTRIC
 from goniosim.engine.unit import BATCH
 from reference.replicates import keys, make_replicates, prepared
@@ -181,7 +181,7 @@ def test_no_branching_overflows_a_queue():
     workspace.begin(4 * BATCH)
     most = 0
     for _ in range(4000):
-        workspace.advance(0, keys(1, 1)[0], 1)
+        workspace.advance(0, keys(1, 1)[0], 1, CROWD * BATCH)
         most = max(most, workspace.filled.max())
     assert workspace.state[LEFT] < 4 * BATCH
     assert CROWD * BATCH < most <= workspace.queues.shape[2]
