@@ -132,15 +132,15 @@ def test_a_call_of_few_rays_ends_after_so_many_stages():
     ("layers", "theta"), [(MIRROR, 89.99), (SLAB, 89.9), (TWO_SLABS, 89.9)], ids=["mirror", "slab", "two slabs"]
 )
 def test_the_scatter_of_seeds_is_what_fewer_paths_state(layers, theta):
-    """300 seeds of 32 replicates: t = (mean - exact) / error has the variance of Student's t of 31.
+    """150 seeds of 32 replicates: t = (mean - exact) / error has the variance of Student's t of 31.
 
-    The mean of t^2 has an error of 8.6 %, its limit is 5.2 of them: errors a fifth too small would be seen. A false
+    The mean of t^2 has an error of 12 %, its limit is 6 of them: errors a quarter too small would be seen. A false
     alarm in 1e-6 for each way out, as the sum of squares is a little skew.
     """
     plan, split = prepared(Split, small(layers, theta))
     wanted = exact(layers, plan.light[0][2])
-    found = np.array([make_replicates(plan, split, 4096, seed).sum(axis=(2, 3, 4)) * 2.0 for seed in range(300)])
+    found = np.array([make_replicates(plan, split, 1024, seed).sum(axis=(2, 3, 4)) * 2.0 for seed in range(150)])
     count = found.shape[1]
     t = (found.mean(axis=1) - wanted) / (found.std(axis=1, ddof=1) / np.sqrt(count))
     square = np.mean(t**2, axis=0) / stats.t(count - 1).var()
-    assert (np.abs(square - 1.0) < 5.2 * np.sqrt((2.0 + 6.0 / (count - 5)) / len(t))).all()
+    assert (np.abs(square - 1.0) < 6.0 * np.sqrt((2.0 + 6.0 / (count - 5)) / len(t))).all()
