@@ -1,14 +1,16 @@
 """Adaptive integration over cells, to a stated tolerance.
 
-All cells are divided together, level by level. A part is settled once the sum of the rules on its own parts
-agrees with the rule on the whole, and it does not hold the peak of a lobe that is too narrow to be seen by
-the rule: around a peak, cells are divided down to the width of the lobe, however narrow, and across it only.
+All cells are divided together, level by level. A part is settled once the sum of the rules on its own parts agrees
+with the rule on the whole, the nodes foretell what is at its border, where a kink may hide from them, and it does not
+hold the peak of a lobe that is too narrow to be seen by the rule: around a peak, cells are divided down to the width
+of the lobe, however narrow, and across it only.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from .border import retell, unseen
 from .division import ALL_TOLD, MOST_PARTS, UNSEEN_PEAK, divide, whole_cells
 from .rule import Rule, evaluate
 
@@ -20,6 +22,8 @@ MAX_PARTS = 20_000
 # so many parts.
 CHUNK = 1 << 15
 MOST_PENDING = 1 << 18
+# Of a smooth integrand that is settled, the nodes may seem not to see some times what the rules differ by.
+SPARED = 4.0
 _NO_LOBE = np.array([np.inf, np.inf, 1.0, 1.0])
 
 
@@ -32,8 +36,8 @@ class Adaptive:
     energy : ndarray, shape (channels, n)
         Fraction of the incident flux.
     error : ndarray, shape (channels, n)
-        Sum of the differences of successive rules: as a rule far above the true error. Infinite where a lobe is
-        too narrow to be seen.
+        Sum of the differences of successive rules, or of what they may not see at a border: as a rule far above the
+        true error. Infinite where a lobe is too narrow to be seen.
     exhausted : ndarray of bool, shape (n,)
         Cells that were given up at the last level, short of the tolerance.
     """
@@ -99,15 +103,16 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
     exhausted = np.zeros(n, bool)
     spent = np.zeros(n, np.int64)
     rectangles, owner, copies = whole_cells(grid, numbers)
-    whole, bends = evaluate(density, grid, rule, rectangles, pool)
+    whole, bends, _ = evaluate(density, grid, rule, rectangles, pool)
     square = np.zeros(len(rectangles), bool)
     for level in range(MAX_LEVELS):
         parts = np.empty((MOST_PARTS * len(rectangles), 4))
         parent = np.empty(len(parts), np.int64)
+        quarter = np.empty(len(parts), np.int8)
         premature = np.empty(len(rectangles), np.int8)
-        count = divide(grid.code, light, peak, rectangles, bends, square, premature, parts, parent)
-        parts, parent = parts[:count], parent[:count]
-        values, part_bends = evaluate(density, grid, rule, parts, pool)
+        count = divide(grid.code, light, peak, rectangles, bends, square, premature, parts, parent, quarter)
+        parts, parent, quarter = parts[:count], parent[:count], quarter[:count]
+        values, part_bends, told = evaluate(density, grid, rule, parts, pool, quarter)
         sums = _added(values, parent, len(rectangles))
         difference = np.abs(sums - whole)
         estimate = settled_energy + _added(sums, owner, n)
@@ -115,7 +120,12 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         close = (difference <= tolerance).all(axis=0)
         fine = close & (premature == ALL_TOLD)
         spent += np.bincount(owner[parent], minlength=n)
-        given_up = ~fine & ((spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1))
+        last = (spent > MAX_PARTS)[owner] | (level == MAX_LEVELS - 1)
+        ending = (fine | last) & (premature == ALL_TOLD)
+        ending, strips = _strips(density, grid, pool, rule, rectangles, ending, parent, quarter, told)
+        fine[ending] &= (strips <= SPARED * tolerance[:, ending]).all(axis=0)
+        difference[:, ending] = np.maximum(difference[:, ending], strips)
+        given_up = ~fine & last
         exhausted[owner[given_up]] = True
         error[:, owner[given_up & (premature == UNSEEN_PEAK)]] = np.inf
         done = fine | given_up
@@ -127,10 +137,25 @@ def _integrate(density, grid, pool, numbers, relative, absolute, peak, rule):
         if n > 1 and np.count_nonzero(again) > MOST_PENDING:
             return None
         rectangles, whole, bends = parts[again], values[:, again], part_bends[:, again]
-        # Divided along one side and close: the other side is still to be tried.
+        # Divided along one side and close, the other side is still to be tried; and quarters tell of their borders.
         square = close[parent[again]]
         owner = owner[parent[again]]
     return settled_energy * copies, error * copies, exhausted
+
+
+def _strips(density, grid, pool, rule, rectangles, ending, parent, quarter, told):
+    """Numbers of the rectangles marked as ``ending``, and what no node sees in them."""
+    (first,) = np.nonzero((quarter == 0) & ending[parent])
+    whole = parent[first]
+    cut = ending.copy()
+    cut[whole] = False
+    (cut,) = np.nonzero(cut)
+    strips = unseen(density, grid, rule, rectangles[whole], told, first, pool)
+    if len(cut):
+        told = retell(density, grid, rule, rectangles[cut], pool)
+        more = unseen(density, grid, rule, rectangles[cut], told, np.arange(0, len(told), 4), pool)
+        strips = np.concatenate([strips, more], axis=1)
+    return np.concatenate([whole, cut]), strips
 
 
 def _added(values, group, n):

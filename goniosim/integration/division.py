@@ -6,7 +6,7 @@ import numpy as np
 
 from .._jit import kernel, scalar, stage
 from ..slices import horizon_azimuth, horizon_coordinate
-from .rule import D_PSI, D_U, PSI, U
+from .rectangle import D_PSI, D_U, PSI, U
 
 # Parts of one rectangle at most: four, each perhaps cut in two by the horizon.
 MOST_PARTS = 8
@@ -86,7 +86,7 @@ def _emit(code, light, u, psi, d_u, d_psi, rectangles, n):
 
 
 @kernel
-def divide(code, light, lobe, rectangles, bends, square, premature, parts, parent):
+def divide(code, light, lobe, rectangles, bends, square, premature, parts, parent, quarter):
     """Divide every rectangle.
 
     Parameters
@@ -105,6 +105,8 @@ def divide(code, light, lobe, rectangles, bends, square, premature, parts, paren
         is too large to show it, `ONE_SIDE` if it was divided along one side only; `ALL_TOLD` otherwise.
     parts : ndarray, shape (MOST_PARTS * n, 4), out
     parent : ndarray of int, shape (MOST_PARTS * n,), out
+    quarter : ndarray of int, shape (MOST_PARTS * n,), out
+        Number of the quarter that a part is; -1 where the rectangle is divided otherwise, or the horizon cuts it.
 
     Returns
     -------
@@ -135,6 +137,7 @@ def divide(code, light, lobe, rectangles, bends, square, premature, parts, paren
         else:
             premature[k] = ALL_TOLD
         before = count
+        is_cut = horizon_coordinate(code, math.pi - psi, light[0], light[2]) < u + d_u
         for i in range(n_u):
             for j in range(n_psi):
                 count = _emit(
@@ -148,6 +151,9 @@ def divide(code, light, lobe, rectangles, bends, square, premature, parts, paren
                     count,
                 )
         parent[before:count] = k
+        are_quarters = (n_u == 2) & (n_psi == 2) & (count == before + 4) & (not is_cut)
+        for i in range(before, count):
+            quarter[i] = i - before if are_quarters else -1
     return count
 
 

@@ -1,17 +1,11 @@
-"""Gauss-Legendre rules on rectangles of a slice, cut where the horizon leaves them."""
-
-import math
+"""Gauss-Legendre rules on rectangles of a slice."""
 
 import numpy as np
 
-from .._jit import kernel, stage
-from ..slices import horizon_azimuth, horizon_coordinate, view_direction, view_row
+from .._jit import kernel
+from .border import TOLD, foretell, weights_of
 from .pool import BLOCK
-
-# Columns of a table of rectangles, in radians: lower row coordinate and azimuth, and the two widths. The
-# azimuth is measured from the mirror direction, pi - phi: there lobes can be needles narrower than the
-# spacing of the numbers around pi.
-U, PSI, D_U, D_PSI = range(4)
+from .rectangle import fill
 
 
 class Rule:
@@ -27,6 +21,10 @@ class Rule:
     bend : ndarray, shape (n,)
         Functional of the values at the nodes that is zero for all polynomials of degree n - 2, and at
         most the largest value: how much a function bends along one side.
+    border : ndarray, shape (4, TOLD, n * n)
+        Of `border.weights_of`.
+    unseen : float
+        Share of a rectangle between its edge and the nearest nodes of its quarters.
     """
 
     def __init__(self, n):
@@ -36,9 +34,11 @@ class Rule:
         # The divided difference of the highest order.
         difference = np.array([1.0 / np.prod(x[i] - np.delete(x, i)) for i in range(n)])
         self.bend = difference / np.abs(difference).sum()
+        self.border = weights_of(self.nodes)
+        self.unseen = 0.5 * float(self.nodes[0])
 
 
-def evaluate(density, grid, rule, rectangles, pool):
+def evaluate(density, grid, rule, rectangles, pool, quarter=None):
     """Apply a rule to rectangles of a slice.
 
     Parameters
@@ -48,6 +48,8 @@ def evaluate(density, grid, rule, rectangles, pool):
     rule : Rule
     rectangles : ndarray, shape (n, 4)
     pool : Pool
+    quarter : ndarray of int, shape (n,), optional
+        Which quarters of the rectangles before these are, or -1; by default, none is.
 
     Returns
     -------
@@ -55,10 +57,13 @@ def evaluate(density, grid, rule, rectangles, pool):
     bends : ndarray, shape (2, n)
         How much the integrand bends along u and along psi, relative to its mean, in the channel where it
         bends most.
+    told : ndarray, shape (n, channels, TOLD), or None
+        Of `border.foretell`, where there are quarters.
     """
     per_rectangle = len(rule.nodes) ** 2
     energy = np.empty((density.channels, len(rectangles)))
     bends = np.empty((2, len(rectangles)))
+    told = None if quarter is None else np.empty((len(rectangles), density.channels, TOLD))
     step = max(1, BLOCK // per_rectangle)
     light = grid.light
 
@@ -69,54 +74,11 @@ def evaluate(density, grid, rule, rectangles, pool):
         fill(grid.code, light, part, rule.nodes, x, y, z, weight)
         density.kernel(density.tables, density.light, x, y, z, values)
         add_up(values, weight, rule.weights, rule.bend, start, energy, bends)
+        if quarter is not None:
+            foretell(values, weight, rectangles, rule.nodes, rule.border, quarter, start, told)
 
     pool.in_blocks(work, len(rectangles), step)
-    return energy, bends
-
-
-@kernel
-def fill(code, light, rectangles, nodes, x, y, z, weight):
-    """View directions at the nodes of rectangles, and cos(theta_v) d omega_v over the weights of the rule."""
-    lx = light[0]
-    ly = light[1]
-    lz = light[2]
-    n = nodes.shape[0]
-    cosines = np.empty(n)
-    sines = np.empty(n)
-    at = 0
-    for k in range(rectangles.shape[0]):
-        u = rectangles[k, U]
-        psi = rectangles[k, PSI]
-        d_u = rectangles[k, D_U]
-        d_psi = rectangles[k, D_PSI]
-        is_cut = horizon_coordinate(code, math.pi - psi, lx, lz) < u + d_u
-        width = d_psi
-        _turn(psi, width, nodes, cosines, sines)
-        for i in range(n):
-            here = u + d_u * nodes[i]
-            sine, cosine, row_factor = view_row(code, here)
-            if is_cut:
-                # Only the azimuths above the horizon, which would be a kink in the integrand.
-                hidden = min(max(math.pi - horizon_azimuth(code, here, lx, lz) - psi, 0.0), d_psi)
-                width = d_psi - hidden
-                _turn(psi + hidden, width, nodes, cosines, sines)
-            area = d_u * width * row_factor
-            for j in range(n):
-                vx, vy, vz, factor = view_direction(code, sine, cosine, cosines[j], sines[j], lx, ly, lz)
-                x[at] = vx
-                y[at] = vy
-                # Rounding must not hide what lies in the horizon.
-                z[at] = max(vz, 1e-12)
-                weight[at] = area * factor * max(vz, 0.0)
-                at += 1
-
-
-@stage
-def _turn(psi, width, nodes, cosines, sines):
-    for j in range(nodes.shape[0]):
-        azimuth = psi + width * nodes[j]
-        cosines[j] = -math.cos(azimuth)
-        sines[j] = math.sin(azimuth)
+    return energy, bends, told
 
 
 @kernel

@@ -12,6 +12,7 @@ from goniosim.engine.lattice import DIMENSIONS
 from goniosim.engine.layout import DOWN, UP, WEIGHT, X, Y, Z
 from goniosim.engine.splitting.deposit import share_out
 from goniosim.engine.splitting.dielectric import go_through, meet_dielectric
+from goniosim.engine.splitting.effort import CROWD, Effort
 from goniosim.engine.splitting.exits import let_through
 from goniosim.engine.splitting.layout import (
     AMOUNT,
@@ -29,7 +30,6 @@ from goniosim.engine.splitting.layout import (
 )
 from goniosim.engine.splitting.lobes import MOST_FACETS, facets_per_arrival
 from goniosim.engine.splitting.numbers import facet_numbers, far_facet, lattice_shifts
-from goniosim.engine.splitting.workspace import CROWD, Workspace
 from goniosim.engine.stages import ROUGH_DIELECTRIC
 from goniosim.engine.unit import BATCH
 from reference.replicates import keys, make_replicates, prepared
@@ -157,13 +157,13 @@ def test_the_narrow_way_out_is_not_left_with_few_paths():
 
 
 @pytest.mark.false_alarm(1.2e-4, seeds=(1, 101, 201))
-def test_crowds_follow_one_branch_and_agree_with_those_who_follow_both(monkeypatch, seed):
+def test_crowds_follow_one_branch_and_agree_with_those_who_follow_both(seed):
     """Totals over seven interfaces within 4.5 sigma of t, 62 and 31 degrees of freedom: a false alarm in 1.2e-4."""
     layers = [dielectric(1.5 if i % 2 else 1.1, 0.4 * (i % 3)) for i in range(6)] + [lambert(0.9)]
     plan, split = prepared(Split, small(layers))
     totals = []
     for crowd in (CROWD * BATCH, -1):
-        monkeypatch.setattr(Workspace.advance, "__defaults__", (crowd,))
+        split.effort = Effort(np.array([crowd]), np.ones(1))
         # Folded: two cells each.
         totals.append(2.0 * make_replicates(plan, split, 2048, seed).sum(axis=(1, 2, 3, 4)))
     difference = totals[0].mean() - totals[1].mean()
@@ -182,7 +182,7 @@ def test_no_branching_overflows_a_queue():
     workspace.begin(4 * BATCH)
     most = 0
     for _ in range(4000):
-        workspace.advance(0, keys(1, 1)[0], 1)
+        workspace.advance(0, keys(1, 1)[0], 1, CROWD * BATCH)
         most = max(most, workspace.filled.max())
     assert workspace.state[LEFT] < 4 * BATCH
     assert CROWD * BATCH < most <= workspace.queues.shape[2]

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..rounds import SMALLEST
+from ..splitting.effort import Effort, find_effort
 from ..splitting.layout import LATER, PHASES
 from ..splitting.lobes import MOST_FACETS, facets_per_arrival
 from ..splitting.usual import usual_weights
@@ -67,6 +68,7 @@ class Split:
         fewest = np.min(self.facets, axis=1, where=self.facets > 0, initial=MOST_FACETS)
         self.facets = np.minimum(self.facets, _MOST_BESIDE * fewest[:, None])
         self.scales = None
+        self.effort = Effort.unbounded(len(directions))
 
     def prepare(self):
         """Find out which weights are usual; the pilot's keys are its own."""
@@ -79,6 +81,7 @@ class Split:
         faint[LATER * queues :] = _FAINT_LATER
         self.scales = 1.0 / np.maximum(faint[:, None] * usual, DARKEST)
         self._share_facets(usual.max(axis=-1))
+        self.effort = find_effort(plan, self.workspace())
 
     def _share_facets(self, usual):
         """Fewer facets for the dimmer one of two ways out, by the root of what is usual there, shape (M, queues)."""
@@ -96,4 +99,4 @@ class Split:
 
     def workspace(self):
         """Arrays of one thread, with ``run``."""
-        return Workspace(self.plan, self.slots, self.facets, self.scales)
+        return Workspace(self.plan, self.slots, self.facets, self.scales, self.effort)

@@ -9,6 +9,8 @@ from ..layout import UP
 
 # More facets cost more than they tell, since other paths would arrive from elsewhere.
 MOST_FACETS = 32
+# Light that comes by again is faint: so many times fewer facets, that its deposits are like those of others.
+FEWER_LATER = 8
 
 
 def facets_per_arrival(plan, direction, way):

@@ -6,7 +6,7 @@ from ..layout import DOWN, UP, WEIGHT, X, Z
 from ..loops import multiply
 from ..stages import LAMBERT, ROUGH_DIELECTRIC, SMOOTH_DIELECTRIC
 from ..stages.travel import absorb, roulette
-from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
+from ..walk import ABOVE, BELOW, fullest
 from .base import meet_base
 from .deposit import leave, share_out
 from .dielectric import go_through, meet_dielectric, turn_back
@@ -43,19 +43,22 @@ from .layout import (
     THROUGH_Z,
     TURN,
 )
+from .lobes import FEWER_LATER
 from .numbers import facet_numbers, hashed_points, lattice_points
 from .queues import close_up, launch, pop, push
 
-# Light that comes by again is faint: so many times fewer facets, that its deposits are like those of others.
-FEWER_LATER = 8
+# A stage takes at least as long as so many events in the midst of many.
+EVENTS_PER_STAGE = 16
 
 # Children of the stage's key: 0 and 1 are the points, 2 azimuths, 3 the roulette.
 _COIN_KEY = 4
 
 
 @kernel
-def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, space, ledger, cells):
-    """Advance one replicate by about ``budget`` events; returns whether it is finished.
+def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, rounds, space, ledger, cells):
+    """Advance one replicate by about ``budget`` events, or by as many stages as take as long.
+
+    Returns whether it is finished.
 
     Parameters
     ----------
@@ -72,6 +75,8 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
     shifts : ndarray, shape (lattice.DIMENSIONS,)
         Of the lattice of all paths.
     budget : int
+    rounds : int
+        Stages after the start of the last path, at which what is still inside is lost.
     space : tuple
         Arrays of the workspace: state, rays in each queue, queues, one batch, its scratch, and one row of
         places.
@@ -88,7 +93,8 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
     most = batch.shape[1]
     path = batch[PATH]
     stop_at = state[EVENTS] + budget
-    while state[EVENTS] < stop_at:
+    last_stage = state[STAGES] + max(1, budget // EVENTS_PER_STAGE)
+    while state[EVENTS] < stop_at and state[STAGES] < last_stage:
         q = fullest(filled)
         key = derive_key(paths_key, state[STAGES])
         state[STAGES] += 1
@@ -105,8 +111,7 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, s
         else:
             if state[LEFT] == 0:
                 state[ROUNDS] += 1
-                if state[ROUNDS] > MAX_ROUNDS * filled.shape[0]:
-                    # As in the analog walk: what is still inside is lost.
+                if state[ROUNDS] > rounds:
                     return True
             phase, arrival = q // (2 * interfaces), q % (2 * interfaces)
             k, side = arrival // 2, arrival % 2

@@ -1,5 +1,7 @@
 """Queues, histograms and scratch arrays of one thread that makes replicates by the split walk."""
 
+import math
+
 import numpy as np
 
 from ...slices import PARAMETRIZATIONS
@@ -7,15 +9,14 @@ from ..lattice import DIMENSIONS
 from ..layout import N_LEDGER, WEIGHT
 from ..sorting import LANES
 from ..unit import BATCH, BUDGET, child_key, queue_capacity
+from ..walk import MAX_ROUNDS
+from .effort import CROWD
 from .layout import EVENTS, LEFT, N_SCRATCH, N_STATE, PHASES
 from .numbers import lattice_shifts
 from .walk import split_walk
 
-# Batches in the fullest queue, above which inner interfaces do not branch. From there on no event adds
-# rays, so that this, and what `unit.queue_capacity` says of such traffic, is all that a queue must hold.
-CROWD = 3
 # Children of the key of a replicate.
-_SHIFTS, _PATHS = 0, 1
+_SHIFTS, _PATHS, _CHANCE = 0, 1, 2
 
 
 def shapes(plan, slots):
@@ -45,13 +46,15 @@ class Workspace:
         Facets through which an arrival leaves.
     scales : ndarray, shape (M, queues, D)
         Reciprocals of the weights below which a ray is faint.
+    effort : goniosim.engine.splitting.effort.Effort
     """
 
-    def __init__(self, plan, slots, facets, scales):
+    def __init__(self, plan, slots, facets, scales, effort):
         self.plan = plan
         self.slots = slots
         self.facets = facets
         self.scales = scales
+        self.effort = effort
         arrays = {name: np.zeros(shape) for name, shape in shapes(plan, int(slots[:, 1].sum())).items()}
         self.queues, self.batch, self.scratch = arrays["queues"], arrays["batch"], arrays["scratch"]
         self.histogram, self.rings = arrays["histogram"], arrays["rings"]
@@ -61,19 +64,26 @@ class Workspace:
         self.cells_of_deposits = np.empty(BATCH, np.int32)
         self.ledger = np.zeros((N_LEDGER, plan.n_distinct))
         self.shifts = np.empty(DIMENSIONS)
+        self.chance = np.empty(1)
         self.space = (self.state, self.filled, self.queues, self.batch, self.scratch, sources)
 
     def run(self, direction, size, keys, out, stop):
         """Make replicates; returns what they cost in events, or None if ``stop`` was set."""
         events = 0
         for key, slices in zip(keys, out, strict=True):
-            self.begin(size)
+            expected = size * self.effort.followed[direction]
+            paths = math.ceil(expected)
+            if expected < 1.0:
+                lattice_shifts(child_key(key, _CHANCE), self.chance)
+                paths = int(self.chance[0] < expected)
+            self.begin(paths)
             lattice_shifts(child_key(key, _SHIFTS), self.shifts)
-            while not self.advance(direction, child_key(key, _PATHS), BUDGET):
+            crowd = self.effort.crowds[direction]
+            while not self.advance(direction, child_key(key, _PATHS), BUDGET, crowd):
                 if stop.is_set():
                     return None
             events += int(self.state[EVENTS])
-            self._collect(size, slices)
+            self._collect(max(paths, 1) if expected >= 1.0 else expected, slices)
         return events
 
     def begin(self, size):
@@ -85,7 +95,7 @@ class Workspace:
         self.state[LEFT] = size
         self.shifts[:] = 0.0
 
-    def advance(self, direction, key, budget, crowd=CROWD * BATCH):
+    def advance(self, direction, key, budget, crowd):
         """Run about ``budget`` events, and at least one stage; returns whether all paths are through.
 
         Where the fullest queue holds more than ``crowd`` rays, inner interfaces do not branch.
@@ -106,15 +116,17 @@ class Workspace:
             plan.width < plan.columns,
         )
         scales, facets = self.scales[direction], self.facets[direction]
+        # What is still inside after that is lost, as in the analog walk; paths that take longer are fewer.
+        rounds = int(MAX_ROUNDS * len(self.filled) / self.effort.followed[direction])
         return split_walk(
-            plan.tables, scales, facets, crowd, light, key, self.shifts, budget, self.space, self.ledger, cells
+            plan.tables, scales, facets, crowd, light, key, self.shifts, budget, rounds, self.space, self.ledger, cells
         )
 
-    def _collect(self, size, slices):
-        """Energy per cell of the whole slice, on the columns that tell all."""
+    def _collect(self, paths, slices):
+        """Energy per cell of the whole slice, on the columns that tell all; each of the paths stands for as much."""
         plan = self.plan
         cells = self.histogram.reshape(len(slices), plan.rows, plan.columns, plan.n_distinct)
-        share = 1.0 / size
+        share = 1.0 / paths
         if plan.width < plan.columns:
             # The azimuth of 180 degrees belongs to the column behind it, which the fold puts on the one before it.
             cells[:, :, plan.width - 1] += cells[:, :, plan.width]
@@ -122,4 +134,4 @@ class Workspace:
         np.multiply(np.moveaxis(cells[:, :, : plan.width], -1, 1), share, out=slices)
         if PARAMETRIZATIONS[plan.parametrization_name][1].RINGS:
             rings = self.rings.reshape(len(slices), plan.rows, plan.n_distinct)
-            slices += np.moveaxis(rings, -1, 1)[..., None] / (size * plan.columns)
+            slices += np.moveaxis(rings, -1, 1)[..., None] / (paths * plan.columns)
