@@ -56,6 +56,7 @@ def _try_all(mutants, folder, jobs):
     with ThreadPoolExecutor(jobs) as pool:
         tests = list(dict.fromkeys(mutant.tests for mutant in mutants))
         for names, verdict in zip(tests, pool.map(lambda names: with_copy(Copy.run, names), tests), strict=True):
+            print(f"{'without any mutant':40} {' '.join(names):115} {verdict.seconds:4.0f} s", flush=True)
             if not verdict.passed:
                 pool.shutdown(cancel_futures=True)
                 sys.exit(f"{verdict.output}\n{' '.join(names)}: does not pass without any mutant")
