@@ -13,7 +13,7 @@ PAPER := out/paper
 # Tests run on all cores, but four at the most: each worker brings kernels and a few hundred megabytes.
 WORKERS := -n auto --maxprocesses 4 --dist loadfile
 
-.PHONY: demo install lint test test-all test-cluster floor hard precision bench headline accuracy cluster-overhead
+.PHONY: demo install lint test test-all test-cluster floor hard precision bench mutants headline accuracy cluster-overhead
 .PHONY: honesty paper paper-report clean
 
 demo: $(STAMP)
@@ -53,6 +53,10 @@ floor: $(STAMP)
 test-cluster: $(STAMP)
 	tests/cluster/install
 	$(BIN)/python -m pytest tests/cluster -m cluster
+
+# Deliberate bugs, each of which the suite has to catch; half an hour. LIST=1 prints them, ONLY='store/*' tries some.
+mutants: $(STAMP)
+	$(BIN)/python -m tests.mutants $(if $(LIST),--list) '$(ONLY)'
 
 # The catalogue of hard cases, and docs/hard_cases.md; some minutes.
 hard: $(STAMP)

@@ -41,10 +41,11 @@ def test_smooth_metal(eta, kappa, tau, seed):
 
 @pytest.mark.false_alarm(1.5e-5, seeds=(2, 102))
 @pytest.mark.parametrize("tau", [0.0, 0.5])
-def test_smooth_slab_and_its_orders(tau, seed):
+@pytest.mark.parametrize("estimator", ["analog", "split"])
+def test_smooth_slab_and_its_orders(tau, estimator, seed):
     layers = [dielectric(1.5), medium(tau), dielectric(1.0)]
     scene = make_scene(layers, THETAS, rows=9, columns=9, orders=4)
-    result = simulate(scene, rays=RAYS, seed=seed)
+    result = simulate(scene, rays=RAYS, seed=seed, estimator=estimator)
     exact = [closed_forms.smooth_slab(c, 1.5, tau) for c in cosines()]
     audit = result.audit.energy
     for entry, values in zip(

@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 
 from goniosim.engine import simulate
-from goniosim.engine.estimators.connection import Connection
+from goniosim.engine.estimators.connection import Connection, _gamble
 from goniosim.engine.layout import DOWN, UP
 from goniosim.engine.plan import make_plan
 from goniosim.engine.unit import unit_key
@@ -79,6 +79,15 @@ def test_small_replicates_have_no_bias(size, eta, count, seed):
     total = replicates(plan, size, seed=seed, count=count).sum(axis=(1, 2, 3, 4))
     exact = plastic_albedo(math.cos(math.radians(30.0)), eta, 0.999)
     assert abs(total.mean() - exact) < 4.5 * total.std(ddof=1) / count**0.5 < 0.1 * exact
+
+
+def test_roulette_with_what_is_faint_is_fair():
+    """Over chances in equal steps to rounding; light that is not faint in some channel stays."""
+    light, threshold = np.array([0.02, 0.05]), np.array([0.1, 0.1])
+    kept = [_gamble(light, threshold, (number + 0.5) / 1000.0) for number in range(1000)]
+    np.testing.assert_allclose(np.mean(kept, axis=0), light, rtol=1e-12)
+    assert np.unique(kept, axis=0).tolist() == [[0.0, 0.0], [0.04, 0.1]]
+    assert _gamble(light, np.array([0.1, 0.05]), 0.999) is light
 
 
 # Layers; the second refracts nothing from grazing directions outside.

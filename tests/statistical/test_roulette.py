@@ -7,7 +7,10 @@ import pytest
 
 from goniosim.engine import simulate
 from goniosim.engine.faint import FAINT, faint_weights
+from goniosim.engine.layout import LOST_ROULETTE, N_LEDGER, WEIGHT
 from goniosim.engine.plan import make_plan
+from goniosim.engine.stages.travel import roulette
+from goniosim.engine.unit import child_key
 from reference.closed_forms import plastic_albedo
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
@@ -105,3 +108,27 @@ def test_a_dark_stack_has_the_same_bits_on_any_number_of_threads():
         np.testing.assert_array_equal(component.energy, three.components[name].energy)
         np.testing.assert_array_equal(component.stderr, three.components[name].stderr)
     assert one.audit.energy["lost_roulette"].any()
+
+
+@pytest.mark.false_alarm(6e-10)
+def test_survivors_are_restored_to_where_they_are_not_faint():
+    """As many survive as are bright, to 6.2 sigma; the rest is exact to rounding, so that no bias is too small."""
+    n, scale, times = 500, np.array([10.0, 40.0]), 1000
+    before = np.random.default_rng(1).uniform(0.0, [[0.15], [0.03]], (2, n))
+    bright = (before * scale[:, None]).max(axis=0)
+    faint = bright < 1.0
+    assert 0.3 * n < faint.sum() < 0.9 * n
+    survived = np.zeros(n)
+    for number in range(times):
+        batch, ledger = np.zeros((WEIGHT + 2, n)), np.zeros((N_LEDGER, 2))
+        batch[WEIGHT:] = before
+        assert roulette(batch, n, scale, np.empty(n), child_key(1, number), ledger)
+        after = batch[WEIGHT:]
+        survived += after[0] > 0.0
+    left = after[0] > 0.0
+    np.testing.assert_array_equal(after[:, ~faint], before[:, ~faint])
+    np.testing.assert_allclose(after[:, faint & left], (before / bright)[:, faint & left], rtol=1e-14)
+    assert not after[:, ~left].any()
+    np.testing.assert_allclose(ledger[LOST_ROULETTE], (before - after).sum(axis=1), rtol=0.0, atol=1e-12)
+    deviation = (survived - times * bright)[faint].sum()
+    assert abs(deviation) < 6.2 * np.sqrt(times * (bright * (1.0 - bright))[faint].sum())

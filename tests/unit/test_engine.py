@@ -10,6 +10,7 @@ import pytest
 from goniosim.compare.measures import measure, rmse
 from goniosim.engine import blas, probe, simulate, warm_up
 from goniosim.engine import unit as unit_module
+from goniosim.engine.estimate import channel_weights
 from goniosim.engine.estimators import ESTIMATORS
 from goniosim.engine.plan import make_plan
 from goniosim.engine.schedule import LARGEST_UNIT, Schedule
@@ -59,6 +60,11 @@ def test_the_noise_floor_is_that_of_the_table_of_errors():
             assert result.cost.error[name][m, -1] == pytest.approx(floor, rel=1e-12)
         joint = (part.bsdf_stderr**2 * result.cells.projected_solid_angle[:, None]).sum(axis=(2, 3)).mean() ** 0.5
         assert joint > 1.1 * rmse(found).noise_floor
+
+
+def test_channels_that_are_alike_count_as_often_as_there_are_of_them():
+    layers = [dielectric(1.5), medium([0.1, 2.0, 0.1]), dielectric(1.0)]
+    np.testing.assert_allclose(channel_weights(make_plan(make_scene(layers, 0.0))), [2.0 / 3.0, 1.0 / 3.0], rtol=1e-15)
 
 
 def test_a_stop_leaves_a_prefix_of_the_complete_result():

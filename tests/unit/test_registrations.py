@@ -96,10 +96,10 @@ def test_coordinates_of_a_parametrization_lead_back(parametrization):
     phi = (np.arange(COLUMNS) + 0.5) * 2.0 * math.pi / COLUMNS
     lit = directions[:, 3] > 0.0
     same = module.directions(u[:, None], phi, LIGHT).reshape(-1, 3)
-    assert np.allclose(same[lit], directions[lit, :3], atol=1e-12)
-    assert np.allclose(found[lit, 0], np.repeat(u, COLUMNS)[lit], atol=1e-9)
+    assert np.allclose(same[lit], directions[lit, :3], rtol=0.0, atol=1e-12)
+    assert np.allclose(found[lit, 0], np.repeat(u, COLUMNS)[lit], rtol=0.0, atol=1e-9)
     from_the_mirror = np.tile(np.abs(math.pi - phi), ROWS)
-    assert np.allclose(np.abs(found[lit, 1]), from_the_mirror[lit], atol=1e-9)
+    assert np.allclose(np.abs(found[lit, 1]), from_the_mirror[lit], rtol=0.0, atol=1e-9)
 
 
 def test_rows_of_a_parametrization_hold_their_projected_solid_angle(parametrization):
@@ -111,7 +111,7 @@ def test_rows_of_a_parametrization_hold_their_projected_solid_angle(parametrizat
     density = a * np.cos(phi) ** 2 + b * np.cos(phi) + c
     exact = (directions[:, 2] * directions[:, 3]).reshape(ROWS, COLUMNS)
     above = directions[:, 2].reshape(ROWS, COLUMNS) > 0.0
-    assert np.allclose(density[above], exact[above], atol=1e-12)
+    assert np.allclose(density[above], exact[above], rtol=0.0, atol=1e-12)
 
 
 def test_directions_and_cell_numbers_of_a_parametrization_agree(parametrization):
@@ -143,7 +143,7 @@ def test_figures_know_a_parametrization(parametrization):
     numbers = np.flatnonzero(geometry.valid)
     assert (view.cell_numbers(cells, 0, THETA, directions[numbers, :3]) == numbers).all()
     drawn = np.array([view.centre(cells, THETA, int(number)) for number in numbers])
-    assert np.allclose(drawn, directions[numbers, :3], atol=1e-12)
+    assert np.allclose(drawn, directions[numbers, :3], rtol=0.0, atol=1e-12)
 
 
 def test_simulation_and_comparison_agree_on_the_cells_of_a_parametrization(parametrization):

@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 
+from goniosim.engine.estimators.split import Split
+from goniosim.engine.layout import UP
+from goniosim.engine.plan import make_plan
+from goniosim.engine.replicated import ReplicatedRun
 from goniosim.engine.replicates import Replicates, unfold
 from goniosim.engine.rounds import FEWEST_PATHS, REPLICATES, SMALLEST, chunks, sizes
 from goniosim.engine.welford import FoldedBlocks, Welford
 from goniosim.sums import block_sums
+from reference.scenes import dielectric, lambert, make_scene
 
 SHAPE = (2, 7, 5)
 VIEWS = [slice(0, 3), slice(0, 1), slice(1, 2), slice(2, 3)]
@@ -112,3 +117,13 @@ def test_blocks_of_folded_slices(rows, columns):
     half = np.random.default_rng(1).gamma(0.5, size=(2, 3, rows, width))
     found = FoldedBlocks(rows, columns, width)(half)
     np.testing.assert_allclose(found, block_sums(unfold(half, columns)), rtol=1e-13)
+
+
+def test_every_replicate_has_a_key_of_its_own():
+    """Over directions, rounds, replicates, and runs of another seed."""
+    plan = make_plan(make_scene([dielectric(1.5), lambert(0.5)], [0.0, 60.0], rows=2, columns=4))
+    runs = [ReplicatedRun(plan, Split(plan, (UP,)), (UP,), seed) for seed in (1, 2)]
+    works = [work for works in runs[0].rounds(3 * FEWEST_PATHS) for work in works]
+    keys = [int(run._key_of(work, number)) for run in runs for work in works for number in work.replicates]
+    assert {work.number for work in works} == {0, 1}
+    assert len(set(keys)) == len(keys) == 2 * 2 * 2 * REPLICATES

@@ -145,3 +145,19 @@ def test_cells_in_blocks_are_the_cells(monkeypatch):
 def test_fine_slices_are_not_kept():
     assert slice_geometry("classic", 90, 360, 1.0) is slice_geometry("classic", 90, 360, 1.0)
     assert slice_geometry("classic", 300, 300, 1.0) is not slice_geometry("classic", 300, 300, 1.0)
+
+
+@pytest.mark.parametrize("name", ["classic", "half"])
+@pytest.mark.parametrize("away", [1e-8, -1e-8])
+def test_edges_are_where_they_belong(name, away):
+    """A hundred-millionth of a cell to each side: ten times as far as the tie rule reaches."""
+    module, light = PARAMETRIZATIONS[name][1], _direction(80.0, 0.0)
+    side = 0 if away > 0.0 else -1
+    rows, columns = np.arange(1, 20), np.arange(1, 360)
+    for row in rows:
+        v = module.directions((row + away) * np.pi / 180.0, (columns + 0.5) * np.pi / 180.0, light)
+        found, _ = _cells(name, v[v[:, 2] > 0.1], 80.0)
+        assert (found == row + side).all() and len(found) > 40
+        v = module.directions((row + 0.5) * np.pi / 180.0, (columns + away) * np.pi / 180.0, light)
+        _, found = _cells(name, v[v[:, 2] > 0.1], 80.0)
+        assert (found == (columns + side)[v[:, 2] > 0.1]).all()

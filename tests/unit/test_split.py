@@ -8,6 +8,7 @@ import pytest
 
 from goniosim.engine import simulate
 from goniosim.engine.estimators.split import Split
+from goniosim.engine.lattice import DIMENSIONS
 from goniosim.engine.layout import DOWN, UP, WEIGHT, X, Y, Z
 from goniosim.engine.splitting.deposit import share_out
 from goniosim.engine.splitting.dielectric import go_through, meet_dielectric
@@ -28,7 +29,7 @@ from goniosim.engine.splitting.layout import (
     THROUGH_X,
 )
 from goniosim.engine.splitting.lobes import MOST_FACETS, facets_per_arrival
-from goniosim.engine.splitting.numbers import facet_numbers, far_facet
+from goniosim.engine.splitting.numbers import facet_numbers, far_facet, lattice_shifts
 from goniosim.engine.stages import ROUGH_DIELECTRIC
 from goniosim.engine.unit import BATCH
 from reference.replicates import keys, make_replicates, prepared
@@ -232,3 +233,15 @@ def test_the_dimmer_way_out_gets_fewer_facets():
     _, split = prepared(Split, make_scene(layers, 10.0, "half"))
     assert split.facets[0, DOWN] == MOST_FACETS
     assert 0.1 * MOST_FACETS < split.facets[0, UP] < 0.3 * MOST_FACETS
+
+
+@pytest.mark.false_alarm(3e-10)
+def test_every_dimension_of_the_lattice_has_a_shift_of_its_own():
+    """Uniform and independent, over 2000 replicates: means and covariances to 6.8 sigma, a false alarm in 3e-10."""
+    shifts = np.empty((2000, DIMENSIONS))
+    for key, row in zip(keys(1, len(shifts)), shifts, strict=True):
+        lattice_shifts(key, row)
+    z = (shifts - 0.5) * math.sqrt(12.0)
+    limit = 6.8 / len(z) ** 0.5
+    assert np.abs(z.mean(axis=0)).max() < limit
+    assert np.abs(z.T @ z / len(z) - np.eye(DIMENSIONS)).max() < limit

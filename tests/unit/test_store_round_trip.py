@@ -10,6 +10,7 @@ import pytest
 
 from goniosim.result import AUDIT_ENTRIES
 from goniosim.store import chunks, open_result, predicted_size, read_header, write_result
+from goniosim.store.checksums import fletcher32
 from goniosim.store.writer import encode
 from synthetic import make_result
 
@@ -220,6 +221,16 @@ def test_hdf5_accepts_checksums_that_came_round(words):
         dataset = file.create_dataset("values", len(raw), np.uint8, chunks=(len(raw),), fletcher32=True)
         dataset.id.write_direct_chunk((0,), raw + chunks.checksum(raw))
         assert dataset[()].tobytes() == raw
+
+
+def test_checksums_of_many_words_are_those_of_a_loop(monkeypatch):
+    monkeypatch.setattr("goniosim.store.checksums._BLOCK", 7)
+    raw = np.random.default_rng(1).bytes(1001)
+    low = high = 0
+    for word in np.frombuffer(raw + b"\0", ">u2").tolist():
+        low = (low + word) % 65535
+        high = (high + low) % 65535
+    assert fletcher32(raw) == (low, high)
 
 
 def test_bytes_do_not_depend_on_threads(monkeypatch):
