@@ -215,7 +215,9 @@ class Session:
             self._begin(run)
         self._began = self.drive.now() - since
         self._from = self._began - self._spent[run]
-        self._took.append(since + self.drive.do(run, works, self._note, first=self._added, keep=self._keep))
+        self.drive.do(run, works, self._note, first=self._added, keep=self._keep)
+        # From the very moment that checkpoints count from: none of a later call is earlier than these.
+        self._took.append(self.drive.now() - self._began)
         self._spent[run] += self._took[-1]
         self._current, self._added, self._began = number + 1, 0, None
         return self._took[-1]

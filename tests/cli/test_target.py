@@ -255,7 +255,7 @@ def test_a_miss_of_the_operator_names_what_limits_it(goniosim, folder, aimed):
 def test_a_target_that_nobody_lives_to_see_ends_with_a_word(goniosim, folder):
     """It would go on for ever, since nothing limits it; instead it says so after two rounds, and ends."""
     code, out, err = call(goniosim, "--target 1e-12 --estimator split", "scene.yaml")
-    told, missed = lines_of(err)
+    told, *_, missed = lines_of(err)
     takes = r"takes about \S+ rays per direction and \S+ years"
     # Two rounds.
     at = r"small: reflection/internal is at \S+ % after 3.932e5 rays per direction"
@@ -269,8 +269,11 @@ def test_a_target_that_nobody_lives_to_see_ends_with_a_word(goniosim, folder):
 
 def test_a_target_beyond_its_limits_is_told_early(goniosim, folder):
     code, _, err = call(goniosim, "--target 1e-5 --max-rays 1e6 --estimator split", "scene.yaml")
-    told, missed = lines_of(err)
-    assert code == 9 and told.endswith("more, beyond the limits: at most 1e6 rays per direction")
+    told, *again, missed = lines_of(err)
+    # Again only if the pace changed much, as on a busy machine.
+    assert code == 9 and all(
+        line.endswith("more, beyond the limits: at most 1e6 rays per direction") for line in (told, *again)
+    )
     assert missed.endswith("the result is kept: raise max_rays, or ask for less")
     # Where it is near, there is nothing to say.
     code, _, err = call(goniosim, "--target 5% --max-rays 1e8 --estimator split", "scene.yaml")

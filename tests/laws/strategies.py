@@ -7,8 +7,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from goniosim.engine.estimators.choose import choose
-from goniosim.engine.estimators.split import Split
-from goniosim.engine.layout import DOWN, N_LEDGER, STAGES, UP
+from goniosim.engine.layout import N_LEDGER, STAGES
 from goniosim.engine.plan import make_plan
 from goniosim.engine.tally import record_length
 from goniosim.engine.unit import Workspace, pilot_key
@@ -27,7 +26,6 @@ ALIKE = [(0, 1, 2), (0, 1, 2), (0, 0, 1), (0, 1, 0), (0, 1, 1)]
 
 # Rays of a trial that tells whether a stack takes long, and events and stages that are enough for others.
 TRIED = 128
-TRIED_SPLIT = 64
 MOST_EVENTS = 200_000
 MOST_STAGES = 2000
 
@@ -122,7 +120,7 @@ def applies(scene, estimator):
 
 
 def lingers(scene):
-    """Whether few rays take seconds: light is caught in the stack, or the split walk branches without end in it."""
+    """Whether light is caught in the stack for so long that few rays take seconds."""
     plan = make_plan(parse_scene(scene)).in_one_cell()
     workspace, ledger = Workspace(plan), np.zeros((N_LEDGER, plan.n_distinct))
     for direction in range(len(plan.theta_deg)):
@@ -131,17 +129,6 @@ def lingers(scene):
         if not workspace.advance(direction, pilot_key(direction), MOST_EVENTS, ledger, cells):
             return True
         if workspace.state[STAGES] > MOST_STAGES:
-            return True
-    return scene["simulation"]["estimator"] == "split" and _multiplies(make_plan(parse_scene(scene)))
-
-
-def _multiplies(plan):
-    estimator = Split(plan, tuple(side for side in (UP, DOWN) if plan.slots[side, 1] > 0))
-    estimator.prepare()
-    workspace = estimator.workspace()
-    for direction in range(len(plan.theta_deg)):
-        workspace.begin(TRIED_SPLIT)
-        if not workspace.advance(direction, pilot_key(direction), MOST_EVENTS):
             return True
     return False
 

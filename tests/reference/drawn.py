@@ -49,7 +49,7 @@ def _replicate(name, layers, side, count):
         estimator.prepare()
     workspace = estimator.workspace()
     if name == "split":
-        workspace.advance = partial(workspace.advance, crowd=0)
+        workspace.effort.crowds[:] = 0
     out = np.empty((1, int(few.slots[side, 1]), few.n_distinct, few.rows, few.width))
     DRAWN.clear()
     workspace.run(0, count, [KEY], out, threading.Event())

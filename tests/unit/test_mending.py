@@ -13,7 +13,7 @@ AROUND = (2, 2)
 
 
 def _naive(mean, variance, reach):
-    """Cell by cell."""
+    """By its definition, with a loop."""
     rows, width = mean.shape
     result = variance.copy()
     for i in range(rows):
@@ -39,7 +39,7 @@ def test_it_is_what_a_loop_over_cells_finds(rows, width, reach):
     rng = np.random.default_rng(1)
     mean = rng.random((2, 3, rows, width)) * (rng.random((2, 3, rows, width)) < 0.7)
     mean[..., 0, 0] = 0.5
-    # Of standard errors from 3 to 30 % and more.
+    # Errors from 3 to 30 % and more.
     variance = rng.random(mean.shape) ** 4 * 0.1 + 1e-3
     before = variance.copy()
     found = mended(mean, variance, reach)
