@@ -54,7 +54,7 @@ test-cluster: $(STAMP)
 	tests/cluster/install
 	$(BIN)/python -m pytest tests/cluster -m cluster
 
-# Deliberate bugs, each of which the suite has to catch; half an hour. LIST=1 prints them, ONLY='store/*' tries some.
+# Deliberate bugs, each of which the suite has to catch; an hour or more. LIST=1 prints them, ONLY='store/*' tries some.
 mutants: $(STAMP)
 	$(BIN)/python -m tests.mutants $(if $(LIST),--list) '$(ONLY)'
 
