@@ -87,7 +87,7 @@ def markdown(outcomes: Sequence[Outcome]) -> str:
         "Beyond these cases: [every function against 40 digits](precision.md); random legal scenes held to laws",
         "(`tests/laws`: 100 in `make test`, 2280 in `make test-all`); random numbers in the orders in which",
         "walks draw them (`tests/hard/test_random_*.py`); interiors of rough dielectrics cell by cell",
-        "(`tests/statistical/test_interiors.py`); and deliberate bugs, which tests have to catch (`make mutants`).",
+        "(`tests/statistical/test_interiors.py`); and [deliberate bugs](mutants.md), which tests have to catch.",
         "",
         f"{verdict(outcomes)}.",
     ]
