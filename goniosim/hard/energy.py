@@ -31,24 +31,33 @@ def sane(result: Result) -> Check:
     return statement("numbers of cells are finite and not negative", not wrong, "all", ", ".join(wrong) or "all")
 
 
-def as_added(result: Result, exact: Energies) -> Iterator[Check]:
-    """Check shares of the light of a stack of smooth interfaces against adding."""
-    energy, stderr = result.audit.energy, result.audit.stderr
-    unseen = float(1.0 / result.rays.min())
-    for entry, share in {
-        "reflected_internal": exact.internal,
-        "transmitted": exact.transmitted,
-    }.items():
-        if share.any() or energy[entry].any():
-            yield in_sigmas(entry.replace("_", " "), energy[entry], stderr[entry], share, unseen)
-    absorbed = energy["absorbed_media"] + energy["absorbed_base"]
+def as_added(result: Result, exact: Energies, rare: bool = False) -> Iterator[Check]:
+    """Check shares of the light of a stack of smooth interfaces against adding.
+
+    ``rare``: few paths enter, and error bars are widened by what they may be missing.
+    """
+    yield from leaving(result, exact, rare)
     if exact.absorbed.max() > CLOSED:
-        error = stderr["absorbed_media"] + stderr["absorbed_base"]
-        yield in_sigmas("absorbed", absorbed, error, exact.absorbed, unseen)
+        yield _sampled(result, "absorbed", ("absorbed_media", "absorbed_base"), exact.absorbed, rare)
     if "reflection/direct" in result.components:
         yield absolute("reflected directly", result.audit.direct_integrated, exact.direct, CLOSED)
     yield closes(result)
     yield sane(result)
+
+
+def leaving(result: Result, exact: Energies, rare: bool = False) -> Iterator[Check]:
+    """Check what leaves a stack after having entered it; arguments as of `as_added`."""
+    for entry, share in {"reflected_internal": exact.internal, "transmitted": exact.transmitted}.items():
+        if share.any() or result.audit.energy[entry].any():
+            yield _sampled(result, entry.replace("_", " "), (entry,), share, rare)
+
+
+def _sampled(result: Result, checked: str, entries: tuple[str, ...], share: np.ndarray, rare: bool) -> Check:
+    energy, stderr = (sum(book[each] for each in entries) for book in (result.audit.energy, result.audit.stderr))
+    rays = float(result.rays.min())
+    if rare:
+        return in_sigmas(checked, energy, with_rare(stderr, rays), share)
+    return in_sigmas(checked, energy, stderr, share, unseen=1.0 / rays)
 
 
 def with_rare(stderr: np.ndarray, rays: float) -> np.ndarray:

@@ -6,16 +6,17 @@ over a stack of reflectance r, gives with A = 1 - a^2 r
     1 - r' = T A / (T + R A),    t' = T a t / (T + R A),    r' = R + T^2 a^2 r / (T + R A),
 
 in which nothing is subtracted: guided light, stacks that lose next to nothing, and those that send next to nothing back
-keep their digits. All light has one
-invariant n sin(theta), so that the sines of all layers are known at once.
+keep their digits. All light has one invariant n sin(theta), so that the sines of all layers are known at once.
 """
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from ...scene import Scene
+from . import fresnel
 
 # Of the directions below a coat, between two critical angles.
 NODES = 400
@@ -63,12 +64,13 @@ def _shares(scene: Scene, cosine: float, channel: int) -> tuple[float, float, fl
     index = np.array([1.0, *(face.eta for face in faces)])
     vertical = _vertical(index, index[0] * cosine, 0)
     if base is not None:
-        end = _conductor(vertical[-1], index[-1], complex(base.eta_rgb[channel], base.kappa_rgb[channel]))
-        loss, through, inner = added(index, vertical, tau, end, 1.0 - end, 0.0)
+        relative = complex(base.eta_rgb[channel], base.kappa_rgb[channel]) / index[-1]
+        end = fresnel.conductor(vertical[-1] / index[-1], relative)
+        loss, through, inner = added(index, vertical, tau, *end, 0.0)
     elif diffuse is not None:
         # What reaches the base, all of it taken for absorbed at first.
         loss, through, inner = added(index, vertical, tau, 0.0, 1.0, 1.0)
-        back, out = _diffuse(index, tau)
+        back, out = _diffuse(tuple(index), tuple(tau))
         rho = diffuse.rho_rgb[channel]
         diffused = through * rho * out / (1.0 - rho * back)
         loss, inner, through = loss - diffused, inner + diffused, 0.0
@@ -143,16 +145,11 @@ def _transmitted(index: np.ndarray, vertical: np.ndarray, k: int) -> np.ndarray:
         return np.where(above * below > 0.0, 0.5 * (s + p), 0.0)
 
 
-def _conductor(vertical: np.ndarray, index: float, eta: complex) -> float:
-    """Reflectance of a conductor of that absolute index for unpolarised light."""
-    below = np.sqrt(complex(eta) ** 2 - index**2 + complex(vertical) ** 2)
-    s = (vertical - below) / (vertical + below)
-    p = (eta**2 * vertical - index**2 * below) / (eta**2 * vertical + index**2 * below)
-    return 0.5 * (abs(s) ** 2 + abs(p) ** 2)
-
-
-def _diffuse(index: np.ndarray, tau: np.ndarray) -> tuple[float, float]:
+@lru_cache
+def _diffuse(layers: tuple[float, ...], depths: tuple[float, ...]) -> tuple[float, float]:
     """Shares of Lambertian light from below that a stack sends back down, and up into the air."""
+    # The same for all directions of the light.
+    index, tau = np.array(layers), np.array(depths)
     n = index[-1]
     critical = sorted({math.sqrt(1.0 - (m / n) ** 2) for m in index[:-1] if m < n})
     edges = [0.0, *critical, 1.0]
