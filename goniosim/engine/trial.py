@@ -34,10 +34,12 @@ class Trial:
     shared : float
         Seconds of what all directions share.
     fixed, slope : float
-        Seconds of a call whatever the size of its replicates, and for each unit of that size.
+        Seconds of a call whatever the size of its replicates, and for each unit of that size, in the mean over the
+        incident directions.
     calls : int
         In a round, over all directions.
     events_per_path : float
+        In the same mean.
     slices : dict of int to ndarray, shape (distinct channels, rows, columns)
         By way out, energies of the middle one of the incident directions.
     spread : dict of int to float
@@ -63,7 +65,7 @@ class Trial:
 
 
 def try_replicates(plan, choice):
-    """Make some replicates of one direction.
+    """Make some replicates: many of one direction, and one of each other.
 
     Parameters
     ----------
@@ -90,10 +92,10 @@ def _trial(plan, choice, estimator, shared):
     out = np.empty((estimator.chunk, slots, plan.n_distinct, plan.rows, plan.width))
     middle = len(plan.theta_deg) // 2
 
-    def run(size, number=0):
-        keys = [child_key(child_key(0, BRANCH), number + i) for i in range(estimator.chunk)]
+    def run(size, number=0, count=estimator.chunk, direction=middle):
+        keys = [child_key(child_key(0, BRANCH), number + i) for i in range(count)]
         start = time.perf_counter()
-        events = workspace.run(middle, size, np.array(keys, np.uint64), out, threading.Event())
+        events = workspace.run(direction, size, np.array(keys, np.uint64), out[:count], threading.Event())
         return time.perf_counter() - start, events
 
     smallest, small, found = estimator.smallest, np.inf, []
@@ -107,12 +109,15 @@ def _trial(plan, choice, estimator, shared):
             break
     slope = max((large - small) / (size - smallest), FASTEST)
     fixed = max(small - slope * smallest, 0.0)
+    of_each = [run(smallest, count=1, direction=direction)[1] for direction in range(len(plan.theta_deg))]
+    mean = float(np.mean(of_each)) / max(of_each[middle], 1)
     slices, spread = {}, {}
     for side, energies in _by_way_out(plan, choice.sides, np.concatenate(found)):
         slices[side] = energies.mean(axis=0)
         spread[side] = noise(plan, middle, energies.std(axis=0, ddof=1))
     calls = -(-REPLICATES // estimator.chunk) * len(plan.theta_deg)
-    return Trial(smallest, shared, fixed, slope, calls, events / float(size * estimator.chunk), slices, spread)
+    events_per_path = mean * events / (size * estimator.chunk)
+    return Trial(smallest, shared, fixed, mean * slope, calls, events_per_path, slices, spread)
 
 
 def _by_way_out(plan, sides, found):

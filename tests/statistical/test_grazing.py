@@ -1,6 +1,7 @@
 """Light that walks for long: what a path costs is bounded, and what fewer paths say is right, as are its errors."""
 
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -105,15 +106,14 @@ def test_usual_paths_are_all_followed(theta):
         assert split.effort.crowds[0] == CROWD * BATCH
 
 
-@pytest.mark.false_alarm(1e-9)
-def test_less_than_one_path_is_followed_by_chance():
-    """Half a path, at 60 degrees: the mean of 600 replicates within 6.2 sigma, of which one is 4 %."""
+def test_at_least_one_path_is_followed():
+    """Replicates that follow none would agree on darkness, without any error."""
     plan, split = prepared(Split, small(MIRROR, 60.0))
-    split.effort = Effort(np.array([CROWD * BATCH]), np.array([0.5 / 4096]))
-    found = make_replicates(plan, split, 4096, 5, 600).sum(axis=(1, 2, 3, 4)) * 2.0
+    split.effort = replace(split.effort, followed=np.array([0.5 / 4096]))
+    found = make_replicates(plan, split, 4096, 5, 200).sum(axis=(1, 2, 3, 4)) * 2.0
     wanted = exact(MIRROR, plan.light[0][2])[0]
-    assert 200 < np.count_nonzero(found) < 400
-    assert abs(found.mean() - wanted) < 6.2 * found.std(ddof=1) / np.sqrt(len(found))
+    assert found.min() > 0.0
+    assert found.mean() == pytest.approx(wanted, abs=6.2 * found.std(ddof=1) / np.sqrt(len(found)))
 
 
 def test_a_call_of_few_rays_ends_after_so_many_stages():

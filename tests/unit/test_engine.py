@@ -127,6 +127,16 @@ def test_probe_measures():
     assert 1.0 < found.events_per_ray < 20.0
 
 
+def test_a_probe_expects_more_work_where_a_direction_takes_more():
+    """Light that enters two slabs at 89.9 degrees is in there for long; the middle direction says nothing of it."""
+    slabs = [dielectric(1.5), dielectric(1.0), dielectric(1.5), dielectric(1.0)]
+    usual, grazing = (
+        probe(make_scene(slabs, angles, rows=3, columns=4, rays=1 << 17, estimator="split"), seconds=0.0)
+        for angles in ([0.0, 10.0, 20.0], [0.0, 10.0, 89.9])
+    )
+    assert grazing.events_per_ray > 3.0 * usual.events_per_ray
+
+
 @pytest.mark.parametrize(("coats", "walks"), [([1.5], False), ([1.5, 1.3], True)])
 def test_a_probe_traces_independent_paths_only_where_they_tell_something(monkeypatch, coats, walks):
     """Where replicates make all slices and nothing catches light, the analog walk is not even compiled."""

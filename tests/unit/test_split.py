@@ -2,6 +2,7 @@
 
 import math
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -163,7 +164,7 @@ def test_crowds_follow_one_branch_and_agree_with_those_who_follow_both(seed):
     plan, split = prepared(Split, small(layers))
     totals = []
     for crowd in (CROWD * BATCH, -1):
-        split.effort = Effort(np.array([crowd]), np.ones(1))
+        split.effort = replace(Effort.unbounded(1), crowds=np.array([crowd]))
         # Folded: two cells each.
         totals.append(2.0 * make_replicates(plan, split, 2048, seed).sum(axis=(1, 2, 3, 4)))
     difference = totals[0].mean() - totals[1].mean()

@@ -7,7 +7,9 @@ the rays gets there. So that what a path costs stays bounded, fewer paths are fo
 Light that is caught between inner interfaces is also little, and stays for long. There the branches are what takes
 the time: a coin chooses one of them, before paths become fewer.
 
-A few paths of a pilot tell what one costs. Where they walk on and on, their weights tell when they will end.
+A few paths of a pilot tell what one costs. Where they walk on and on, their weights tell when they will end. If that
+is out of sight, light is caught for good: what is inside after the rounds that the analog walk grants is lost, as
+there, and its energy balance tells how much that is.
 """
 
 import math
@@ -16,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..layout import WEIGHT
+from ..rounds import SMALLEST
 from ..unit import BATCH, pilot_key
 from .layout import EVENTS, STAGES
 from .lobes import FEWER_LATER
@@ -29,8 +32,9 @@ ROUNDS = 32
 _PATHS = 64
 _LOOK = 1 << 12
 _STAGES = 1 << 16
-# Smallest share, far below that of anything that leaves again.
-_LEAST = 1e-12
+# Times what a path is granted, above which its end is out of sight: the smallest replicate could not afford one of
+# them. Light that enters at 89.999 degrees stays a quarter of it.
+_OUT_OF_SIGHT = SMALLEST
 
 
 @dataclass(frozen=True)
@@ -43,15 +47,18 @@ class Effort:
         Rays in the fullest queue, above which an inner interface does not branch: `CROWD` batches, or -1.
     followed : ndarray, shape (M,)
         Share of the paths that are followed, in (0, 1]; 1 where paths are short.
+    patience : ndarray, shape (M,)
+        How many times the rounds of the analog walk it takes until what is still inside is lost.
     """
 
     crowds: np.ndarray
     followed: np.ndarray
+    patience: np.ndarray
 
     @classmethod
     def unbounded(cls, directions):
         """Every path and every branch, but in a crowd."""
-        return cls(np.full(directions, CROWD * BATCH), np.ones(directions))
+        return cls(np.full(directions, CROWD * BATCH), np.ones(directions), np.ones(directions))
 
 
 def find_effort(plan, workspace):
@@ -70,34 +77,57 @@ def find_effort(plan, workspace):
     effort = Effort.unbounded(len(plan.theta_deg))
     for direction, facets in enumerate(workspace.facets):
         affordable = _PATHS * ROUNDS * (2 * len(plan.kinds) + facets.sum() / FEWER_LATER)
-        events = _events(plan, workspace, direction, effort.crowds[direction])
-        if events > affordable and len(plan.kinds) > 2:
+        branches = len(plan.kinds) > 2
+        pilot = _Pilot(plan, workspace, direction, effort.crowds[direction])
+        if branches and not pilot.ends_before(affordable):
             effort.crowds[direction] = -1
-            events = _events(plan, workspace, direction, -1)
-        if events > affordable:
-            effort.followed[direction] = max(affordable / events, _LEAST)
+            pilot = _Pilot(plan, workspace, direction, -1)
+        if pilot.ends_before(affordable):
+            continue
+        pilot.ends_before(math.inf)
+        events = pilot.expected()
+        if events > _OUT_OF_SIGHT * affordable:
+            effort.followed[direction] = max(affordable / pilot.events, 1.0 / _PATHS)
+        else:
+            effort.followed[direction] = affordable / events
+            effort.patience[direction] = events / affordable
     return effort
 
 
-def _events(plan, workspace, direction, crowd):
-    """Events of all paths of the pilot."""
-    seen = []
-    workspace.begin(_PATHS)
-    while not workspace.advance(direction, pilot_key(direction), _LOOK, crowd):
-        seen.append((int(workspace.state[EVENTS]), _light_inside(plan, workspace)))
-        if workspace.state[STAGES] > _STAGES:
-            return _extrapolated(*seen[len(seen) // 2], *seen[-1])
-    return int(workspace.state[EVENTS])
+class _Pilot:
+    """A few paths, followed as far as need be."""
 
+    def __init__(self, plan, workspace, direction, crowd):
+        self._plan, self._workspace = plan, workspace
+        self._step = direction, pilot_key(direction), _LOOK, crowd
+        self._ended = False
+        # Events so far, and the light that was inside, at every look.
+        self._seen = []
+        workspace.begin(_PATHS)
 
-def _light_inside(plan, workspace):
-    """Sum of the largest weights of all rays that wait."""
-    weights = workspace.queues[:, WEIGHT : WEIGHT + plan.n_distinct]
-    return sum(float(each[:, :n].max(axis=0).sum()) for each, n in zip(weights, workspace.filled, strict=True))
+    @property
+    def events(self):
+        return int(self._workspace.state[EVENTS])
 
+    def ends_before(self, events):
+        """Go on until all paths have ended, so many events are over, or too many stages."""
+        workspace = self._workspace
+        while not self._ended and self.events <= events and workspace.state[STAGES] <= _STAGES:
+            self._ended = workspace.advance(*self._step)
+            self._seen.append((self.events, self._light_inside()))
+        return self._ended and self.events <= events
 
-def _extrapolated(middle, light_then, events, light):
-    """Events until all is over, of paths whose light has decayed between the middle and the end of a pilot."""
-    decay = math.log(max(light_then / light, 1.0)) / (events - middle) if light > 0.0 else 0.0
-    # Roulette begins when a tenth of the light is left, and then takes as many rays as there is light lost.
-    return events + (1.0 + math.log(10.0)) / max(decay, 1e-300)
+    def _light_inside(self):
+        """Sum of the largest weights of all rays that wait."""
+        weights = self._workspace.queues[:, WEIGHT : WEIGHT + self._plan.n_distinct]
+        filled = self._workspace.filled
+        return sum(float(each[:, :n].max(axis=0).sum()) for each, n in zip(weights, filled, strict=True))
+
+    def expected(self):
+        """Events until all is over, by how light has decayed between the middle and the end of what was seen."""
+        if self._ended:
+            return self.events
+        (middle, light_then), (events, light) = self._seen[len(self._seen) // 2], self._seen[-1]
+        decay = math.log(max(light_then / light, 1.0)) / (events - middle) if light > 0.0 else 0.0
+        # Roulette begins when a tenth of the light is left, and then takes as many rays as there is light lost.
+        return events + (1.0 + math.log(10.0)) / max(decay, 1e-300)

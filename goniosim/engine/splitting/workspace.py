@@ -16,7 +16,7 @@ from .numbers import lattice_shifts
 from .walk import split_walk
 
 # Children of the key of a replicate.
-_SHIFTS, _PATHS, _CHANCE = 0, 1, 2
+_SHIFTS, _PATHS = 0, 1
 
 
 def shapes(plan, slots):
@@ -64,18 +64,14 @@ class Workspace:
         self.cells_of_deposits = np.empty(BATCH, np.int32)
         self.ledger = np.zeros((N_LEDGER, plan.n_distinct))
         self.shifts = np.empty(DIMENSIONS)
-        self.chance = np.empty(1)
         self.space = (self.state, self.filled, self.queues, self.batch, self.scratch, sources)
 
     def run(self, direction, size, keys, out, stop):
         """Make replicates; returns what they cost in events, or None if ``stop`` was set."""
         events = 0
         for key, slices in zip(keys, out, strict=True):
-            expected = size * self.effort.followed[direction]
-            paths = math.ceil(expected)
-            if expected < 1.0:
-                lattice_shifts(child_key(key, _CHANCE), self.chance)
-                paths = int(self.chance[0] < expected)
+            # At least one: of none at all, neither energies nor their errors would be known.
+            paths = math.ceil(size * self.effort.followed[direction])
             self.begin(paths)
             lattice_shifts(child_key(key, _SHIFTS), self.shifts)
             crowd = self.effort.crowds[direction]
@@ -83,7 +79,7 @@ class Workspace:
                 if stop.is_set():
                     return None
             events += int(self.state[EVENTS])
-            self._collect(max(paths, 1) if expected >= 1.0 else expected, slices)
+            self._collect(paths, slices)
         return events
 
     def begin(self, size):
@@ -116,8 +112,8 @@ class Workspace:
             plan.width < plan.columns,
         )
         scales, facets = self.scales[direction], self.facets[direction]
-        # What is still inside after that is lost, as in the analog walk; paths that take longer are fewer.
-        rounds = int(MAX_ROUNDS * len(self.filled) / self.effort.followed[direction])
+        # What is still inside after that is lost, as in the analog walk.
+        rounds = int(MAX_ROUNDS * len(self.filled) * self.effort.patience[direction])
         return split_walk(
             plan.tables, scales, facets, crowd, light, key, self.shifts, budget, rounds, self.space, self.ledger, cells
         )
