@@ -10,6 +10,9 @@
     not equal a later one that takes its kernels from the cache.
 ``kernel``
     Functions over arrays, called from Python. They release the GIL and are cached on disk.
+
+Loops that store run over slices of rows, from 0 on: an index that LLVM cannot see to be positive might count from the
+end, and whether the loop runs as SIMD code then depends on where arrays lie in memory, and with it the last bits.
 """
 
 # First, since it looks at what numba is going to read.

@@ -14,7 +14,8 @@ from ..optics.fresnel import fresnel_conductor, fresnel_dielectric
 from ..optics.microfacet import microfacet_reflection
 from .stages import LAMBERT, ROUGH_CONDUCTOR, ROUGH_DIELECTRIC, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 
-# Difference of successive rules on a part of a cell, relative to the cell, and what does not matter.
+# Difference of successive rules on a part of a cell, relative to the cell, and what does not matter; less, where the
+# whole slice is so dim that it would.
 RELATIVE_TOLERANCE = 1e-10
 ABSOLUTE_TOLERANCE = 1e-14
 
@@ -73,18 +74,25 @@ def direct_reflection(plan, direction, pool, stop=None):
         return energy, np.zeros(shape)
     # The index of a dielectric is the same in all channels.
     channels = plan.n_distinct if kind == ROUGH_CONDUCTOR else 1
-    found = integrate_adaptively(
-        _Reflection((kind, alpha, eta, spectral), light, channels),
-        grid,
-        pool,
-        grid.all_numbers,
-        relative=RELATIVE_TOLERANCE,
-        absolute=ABSOLUTE_TOLERANCE,
-        lobe=find_lobe(grid, light, alpha),
-        stop=stop,
-    )
-    if found is None:
-        return None
+    density = _Reflection((kind, alpha, eta, spectral), light, channels)
+    lobe = find_lobe(grid, light, alpha)
+    absolute, least = np.inf, 1.0
+    # What an interface of nearly equal indices reflects would not matter at all.
+    while least > 0.0 and (wanted := min(ABSOLUTE_TOLERANCE, RELATIVE_TOLERANCE * least)) < 0.1 * absolute:
+        absolute = wanted
+        found = integrate_adaptively(
+            density,
+            grid,
+            pool,
+            grid.all_numbers,
+            relative=RELATIVE_TOLERANCE,
+            absolute=absolute,
+            lobe=lobe,
+            stop=stop,
+        )
+        if found is None:
+            return None
+        least = float(found.energy.sum(axis=1).min())
     energy, error = grid.unfold(found.energy), grid.unfold(found.error)
     # What no other cell holds may be in one whose lobe is too narrow to be seen.
     rest = np.maximum(0.0, 1.0 - energy.sum(axis=(1, 2), keepdims=True))

@@ -82,10 +82,14 @@ class Plan:
         """Histograms, over both ways out."""
         return int(self.slots[:, 1].sum())
 
-    @property
+    @cached_property
     def width(self):
-        """Columns that tell all: light at phi = 0 on isotropic layers makes column K - 1 - j equal to column j."""
-        return self.columns if self.columns % 2 else self.columns // 2
+        """Columns that tell all: light at phi = 0 on isotropic layers makes column K - 1 - j equal to column j.
+
+        But light that stays in the plane of incidence lies on an edge, and belongs to the column behind it alone.
+        """
+        folds = self.columns % 2 == 0 and not any(self.has_specular_chain(side) for side in (UP, DOWN))
+        return self.columns // 2 if folds else self.columns
 
     def in_one_cell(self):
         """The same rays, all of whose exits share one cell: for what does not look at slices."""

@@ -29,7 +29,7 @@ from .schedule import AUDIT_RAYS, LEAST_AUDIT_RAYS
 from .unit import child_key
 
 # Of `Session.state`, to be raised whenever one of before would not lead to the same bits.
-VERSION = [5, version_of("goniosim")]
+VERSION = [6, version_of("goniosim")]
 # Child of the seed's key, for a run that takes the place of another.
 BRANCH = 5
 

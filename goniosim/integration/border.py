@@ -11,7 +11,7 @@ The integrand is taken over the row coordinate: it vanishes at the pole of a sli
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import kernel, stage
 from .pool import BLOCK
 from .rectangle import D_U, U, fill
 
@@ -88,10 +88,7 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
         high = low + parts[start + k, D_U]
         middle = high if place < 2 else low
         for c in range(values.shape[0]):
-            for i in range(n):
-                scale = middle / (low + (high - low) * nodes[i])
-                for j in range(i * n, (i + 1) * n):
-                    f[j] = values[c, k * count + j] * weight[k * count + j] * scale
+            _integrand(values[c, k * count :], weight[k * count :], nodes, low, high, middle, f)
             row = told[start + k, c]
             # Four at a time: one sum alone would wait for itself.
             for p in range(0, TOLD, 4):
@@ -108,6 +105,19 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
                 row[p + 1] = b
                 row[p + 2] = d
                 row[p + 3] = e
+
+
+@stage
+def _integrand(values, weight, nodes, low, high, middle, f):
+    """Values of the integrand at the nodes of a quarter, over the row coordinate."""
+    n = nodes.shape[0]
+    for i in range(n):
+        scale = middle / (low + (high - low) * nodes[i])
+        here = f[i * n : (i + 1) * n]
+        value = values[i * n : (i + 1) * n]
+        area = weight[i * n : (i + 1) * n]
+        for j in range(n):
+            here[j] = value[j] * area[j] * scale
 
 
 def retell(density, grid, rule, rectangles, pool):

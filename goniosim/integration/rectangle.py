@@ -40,14 +40,18 @@ def fill(code, light, rectangles, nodes, x, y, z, weight):
                 width = d_psi - hidden
                 _turn(psi + hidden, width, nodes, cosines, sines)
             area = d_u * width * row_factor
+            here_x = x[at : at + n]
+            here_y = y[at : at + n]
+            here_z = z[at : at + n]
+            here_weight = weight[at : at + n]
             for j in range(n):
                 vx, vy, vz, factor = view_direction(code, sine, cosine, cosines[j], sines[j], lx, ly, lz)
-                x[at] = vx
-                y[at] = vy
+                here_x[j] = vx
+                here_y[j] = vy
                 # Rounding must not hide what lies in the horizon.
-                z[at] = max(vz, 1e-12)
-                weight[at] = area * factor * max(vz, 0.0)
-                at += 1
+                here_z[j] = max(vz, 1e-12)
+                here_weight[j] = area * factor * max(vz, 0.0)
+            at += n
 
 
 @stage

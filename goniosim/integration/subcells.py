@@ -100,15 +100,18 @@ def fill_subcells(code, light, numbers, half_columns, n, row, column, row_integr
             a = row_integral[i, 0]
             b = row_integral[i, 1]
             c = row_integral[i, 2]
-            for j in range(first_column, first_column + n):
-                vx, vy, vz, _ = view_direction(
-                    code, row[i, 0], row[i, 1], column[j, 1], column[j, 0], light[0], light[1], light[2]
+            here_x = x[at : at + n]
+            here_y = y[at : at + n]
+            here_z = z[at : at + n]
+            here_weight = weight[at : at + n]
+            azimuths = column[first_column : first_column + n]
+            integrals = column_integral[first_column : first_column + n]
+            for j in range(n):
+                here_x[j], here_y[j], here_z[j], _ = view_direction(
+                    code, row[i, 0], row[i, 1], azimuths[j, 1], azimuths[j, 0], light[0], light[1], light[2]
                 )
-                x[at] = vx
-                y[at] = vy
-                z[at] = vz
-                weight[at] = a * column_integral[j, 0] + b * column_integral[j, 1] + c * column_integral[j, 2]
-                at += 1
+                here_weight[j] = a * integrals[j, 0] + b * integrals[j, 1] + c * integrals[j, 2]
+            at += n
 
 
 @kernel
