@@ -69,16 +69,16 @@ def test_other_grids(rows, columns, estimator):
             assert lit.tolist() == [[row, column]]
 
 
-@pytest.mark.false_alarm(1.1e-8)
-def test_what_lies_beside_the_plane_is_still_that_of_the_analog_walk():
-    """A beam in one cell, through smooth interfaces, and a wide lobe of a rough base around it: 72 cells, 6.4 sigma."""
+@pytest.mark.false_alarm(4e-4, seeds=(1, 101, 201))
+def test_what_lies_beside_the_plane_is_still_that_of_the_analog_walk(seed):
+    """A beam in one cell and a wide lobe around it: 72 cells within 5.5 sigma of Student's t of 31 at the worst."""
     scene = make_scene([dielectric(1.5), dielectric(1.3), conductor(1.2, 1.0, 0.3)], 40, rows=6, columns=12)
     analog, split = (
-        simulate(scene, rays=rays, estimator=name, seed=1).components["reflection/internal"]
+        simulate(scene, rays=rays, estimator=name, seed=seed).components["reflection/internal"]
         for name, rays in (("analog", 1_000_000), ("split", 200_000))
     )
     sigma = np.hypot(analog.stderr, split.stderr)
-    assert split.contains_delta and (np.abs(analog.energy - split.energy) < 6.4 * sigma + 1e-9).all()
+    assert split.contains_delta and (np.abs(analog.energy - split.energy) < 5.5 * sigma + 1e-9).all()
 
 
 @pytest.mark.parametrize("parametrization", ["classic", "half"])
