@@ -61,9 +61,13 @@ def far(simulation, outlook):
         One line.
     """
     names = " and ".join(COMPONENT_OF[side] for side in outlook.sides)
+    more = f"{_paths_and_time(outlook.needed, outlook.seconds)} more"
+    beyond = f", beyond the limits: {limits(simulation)}" if outlook.is_cut else ""
+    if np.isinf(outlook.error):
+        at = f"of {names} too little was seen for an error after {text.count(outlook.paths)} rays per direction"
+        return f"{at}; the target of {simulation.target} takes over {more}{beyond}"
     at = f"{names} is at {100.0 * outlook.error:.2g} % after {text.count(outlook.paths)} rays per direction"
-    takes = f"the target of {simulation.target} takes about {_paths_and_time(outlook.needed, outlook.seconds)} more"
-    return f"{at}; {takes}" + (f", beyond the limits: {limits(simulation)}" if outlook.is_cut else "")
+    return f"{at}; the target of {simulation.target} takes about {more}{beyond}"
 
 
 def _paths_and_time(paths, seconds):
@@ -100,6 +104,8 @@ def _price(target, result):
     for name in (name for name, component in result.components.items() if component.sampled):
         _, bounds = accuracy.errors(result, name, target.of)
         worst, course = int(np.argmax(bounds)), trend(result, name)
+        if np.isinf(bounds[worst]):
+            return f" ({name}: {accuracy.unknown(result, name, worst)})"
         off = _off(result, name, worst)
         paths = paths_for(target.relative_error, bounds[worst], off, course.rays, course.slope)
         found.append((paths, course.fixed + course.per_ray * paths, bounds[worst]))
