@@ -160,6 +160,15 @@ def test_rays_that_a_target_spread_count_together():
     assert not partial.holds(asked["target"])
 
 
+def test_what_saw_nothing_gives_way_to_another_estimator():
+    """It is without noise, and worth less for that."""
+    cost = SimpleNamespace(error={"transmission": np.array([[1e-9]])})
+    new = SimpleNamespace(rays=np.array([1000]), estimator="operator", cost=cost)
+    for noise, kept in ((0.0, False), (1e-10, True), (1e-8, False)):
+        there = Standing(np.array([10**6]), (), "complete", estimator="analog", noise=noise)
+        assert there.outweighs(new) == kept
+
+
 ONE = """
 material: {name: one, layers: [{interface: {type: lambert, rho: 1}}]}
 incident: {theta_deg: [0, 30]}
