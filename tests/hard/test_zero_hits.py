@@ -93,11 +93,13 @@ def test_a_number_of_rays_that_see_nothing_tells_no_error_either():
 @pytest.mark.parametrize("estimator", ["auto", "analog", "split"])
 def test_a_target_on_what_is_too_faint_for_an_error_ends_at_once(estimator):
     """No number of rays changes that: it does not go on to its limits, of which there are none here."""
-    result = goniosim.simulate(aimed(FAINT, 30.0, target=0.35, estimator=estimator))
+    scene = aimed(FAINT, 30.0, target=0.35, estimator=estimator)
+    result = goniosim.simulate(scene)
     # One round.
     assert result.target_reached is False and result.rays[0] == (262_144 if estimator == "auto" else 131_072)
     (line,) = accuracy_lines(result)[1:]
     assert "too little was seen at 30 deg for an error to be known" in line and "better" not in line
+    assert shortfall(scene.simulation, result).endswith("the result is kept: ask for rays instead")
     value = float(result.components["reflection/internal"].albedo[0, 0])
     assert 0.0 < value < 1e-155 and f"about {value:.1g}" in albedo_lines(result)[-1]
 

@@ -89,9 +89,14 @@ def unknown(result, name, direction):
         ``nothing was seen at 89 deg: at most 2e-05``, or that it is too little.
     """
     at = f"at {text.angles(result.theta_deg)[direction]} deg"
-    if arrived(result.components[name])[direction].any():
+    if is_too_faint(result, name, direction):
         return f"too little was seen {at} for an error to be known, by any number of rays"
     return f"nothing was seen {at}: at most {unseen(result, direction)}"
+
+
+def is_too_faint(result, name, direction):
+    """Of a component whose error is unknown in a direction: whether something was seen, of which no rays tell more."""
+    return bool(arrived(result.components[name])[direction].any())
 
 
 def _is_dark(result, name):

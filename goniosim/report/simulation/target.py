@@ -94,8 +94,22 @@ def shortfall(simulation, result=None):
     remedy = f"raise {' or '.join(names)}, or ask for less" if names else "ask for less"
     if simulation.estimator == "operator":
         remedy += ", or leave the estimator to auto: what nodes may be off by limits this one"
-    price = "" if result is None else _price(simulation.target, result)
+    unknown = result and _unknown(simulation.target, result)
+    if unknown:
+        price = f" ({unknown[0]}: {accuracy.unknown(result, *unknown)})"
+        remedy = "ask for rays instead" if accuracy.is_too_faint(result, *unknown) else remedy
+    else:
+        price = "" if result is None else _price(simulation.target, result)
     return f"the target of {simulation.target} was not reached{within}{price}; the result is kept: {remedy}"
+
+
+def _unknown(target, result):
+    """Name and direction of a component whose error is unknown; None if all are known."""
+    for name in (name for name, component in result.components.items() if component.sampled):
+        _, bounds = accuracy.errors(result, name, target.of)
+        if np.isinf(bounds).any():
+            return name, int(np.argmax(bounds))
+    return None
 
 
 def _price(target, result):
@@ -104,8 +118,6 @@ def _price(target, result):
     for name in (name for name, component in result.components.items() if component.sampled):
         _, bounds = accuracy.errors(result, name, target.of)
         worst, course = int(np.argmax(bounds)), trend(result, name)
-        if np.isinf(bounds[worst]):
-            return f" ({name}: {accuracy.unknown(result, name, worst)})"
         off = _off(result, name, worst)
         paths = paths_for(target.relative_error, bounds[worst], off, course.rays, course.slope)
         found.append((paths, course.fixed + course.per_ray * paths, bounds[worst]))
