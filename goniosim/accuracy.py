@@ -2,7 +2,8 @@
 
 Three readings: of the ``slice``, the Eq. 4 norm of the standard error over that of the slice; of the ``albedo``, the
 relative error of the sum of all cells; of the ``cells``, the relative error that 95 % of those cells keep which
-hold 95 % of the energy. Never more is asked of cells that may be empty. Channels that are black count nowhere.
+hold 95 % of the energy. Never more is asked of cells that may be empty. Channels of which nothing was seen do not
+count beside others. Where there are no others the error is unknown, hence infinite: nothing seen is not nothing there.
 
 A standard error is what the true error is on average, and a run that stops as soon as it is as asked for is off by more
 every second or third time. So a target is held against what the true error of a slice or an albedo stays below in nine
@@ -19,6 +20,8 @@ BRIGHT = 0.95
 PERCENTILE = 95.0
 # Nine of ten normal numbers are smaller.
 NINE_OF_TEN = 1.2816
+# The squares of what is fainter underflow, so that it has no scatter that tells an error.
+FAINTEST = 1e-150
 # The s of a noise that falls as N^-s: of independent paths; and of a lattice, as far as one may hope.
 INDEPENDENT, FASTEST = 0.5, 1.0
 # Decimal places of a number of light paths, as many as are told.
@@ -44,7 +47,7 @@ def relative_error(of, energy, stderr, total, projected_solid_angle, weights):
     Returns
     -------
     float
-        0 where nothing leaves.
+        Infinite where it is unknown: nothing was seen, or less than `FAINTEST`.
     """
     if of == "albedo":
         value, error = total
@@ -70,7 +73,7 @@ def bound(of, energy, stderr, total, projected_solid_angle, weights, noise, bias
     Returns
     -------
     float
-        0 where nothing leaves.
+        Infinite where it is unknown, as there.
     """
     margin = _margin(of, stderr, projected_solid_angle, noise)
     wide, total = stderr * margin[:, None, None], (total[0], total[1] * margin)
@@ -177,6 +180,6 @@ def _over(error, value):
 
 
 def _mean(error, value, weights):
-    """Mean over the channels that are not black."""
-    lit = value > 0.0
-    return float(error[lit] @ weights[lit] / weights[lit].sum()) if lit.any() else 0.0
+    """Mean over the channels that are seen."""
+    seen = value > FAINTEST
+    return float(error[seen] @ weights[seen] / weights[seen].sum()) if seen.any() else math.inf

@@ -1,10 +1,13 @@
 """From runs to a result: components with their error bars, and what they cost."""
 
+import math
+
 import numpy as np
 
-from ..accuracy import bound
+from ..accuracy import FAINTEST, bound
 from ..result import INTEGRATED, Cost
 from .estimate import COMPONENT_OF, Estimate, assemble, channel_weights, noise, shared_seconds, valid_size
+from .reach import most_light
 
 
 def components(plan, runs, direct):
@@ -115,15 +118,25 @@ def errors(plan, run, direction):
 
 
 def worst_error(plan, run, direction, of):
-    """What a target is held against in one direction: the largest `goniosim.accuracy.bound` of a run's components."""
+    """What a target is held against in one direction: the largest `goniosim.accuracy.bound` of a run's components.
+
+    Infinite if nothing was seen of one that may receive light; one that is dark for sure has no error.
+    """
     size, weights = valid_size(plan, direction), channel_weights(plan)
     found = []
     for side in run.sides:
         one = run.estimate(side, direction)
         total = one.energy.sum(axis=(1, 2)), one.total_stderr
-        found.append(bound(of, one.energy, one.stderr, total, size, weights, one.noise, one.bias))
+        error = bound(of, one.energy, one.stderr, total, size, weights, one.noise, one.bias)
+        is_dark = math.isinf(error) and most_light(plan, side, direction) == 0.0
+        found.append(0.0 if is_dark else error)
     # Nothing but the direct reflection may leave.
     return max(found, default=0.0)
+
+
+def is_too_faint(plan, run, direction):
+    """Whether so little light can leave in one direction that no number of light paths tells an error of it."""
+    return any(0.0 < most_light(plan, side, direction) < FAINTEST for side in run.sides)
 
 
 def floor(plan, run, direction):

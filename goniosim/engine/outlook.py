@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ..accuracy import fall, paths_for
+from ..accuracy import FASTEST, INDEPENDENT, fall, paths_for
 from . import assembly
 from .analog import AnalogRun
 
@@ -13,6 +13,8 @@ LONG = 3600.0
 HOPELESS = 3.2e8
 # Limits come first if the rest takes so many times what they leave: what is told may be off by a factor.
 MARGIN = 2.0
+# The error of what was seen once; of what was not seen, it is no less.
+SEEN_ONCE = 1.0
 # It is told again once it has changed by such a factor.
 NEWS = 4.0
 
@@ -26,9 +28,10 @@ class Outlook:
     sides : tuple of int
         Ways out that the run serves.
     error : float
-        What the target is held against, in the direction that needs most.
+        What the target is held against, in the direction that needs most; infinite if too little was seen to know it.
     paths, needed : float
-        Light paths of that direction: those that are through, and what the target takes in all.
+        Light paths of that direction: those that are through, and what the target takes in all, or more than that if
+        the error is unknown.
     seconds : float
         Of wall-clock time that all directions take from now on.
     is_cut : bool
@@ -59,13 +62,16 @@ def needed(plan, run, known, direction, target):
     -------
     error, paths : float
         What the target is held against, and the light paths; None for these after a single round of replicates, which
-        says nothing of how their noise falls.
+        says nothing of how their noise falls. Of an unknown error, the least that it can be.
     """
     noted = run.spending.checkpoints[direction]
     independent = isinstance(run, AnalogRun) or known is not run
     error = assembly.worst_error(plan, known, direction, target.of)
     if len(noted) < 2 and not independent:
         return error, None
+    if math.isinf(error):
+        slope = INDEPENDENT if independent else FASTEST
+        return error, float(paths_for(target.relative_error, SEEN_ONCE, 0.0, int(known.rays[direction]), slope))
     slope = fall([row[0] for row in noted], [max(row[3].values(), default=0.0) for row in noted], independent)
     off = assembly.floor(plan, known, direction)
     return error, float(paths_for(target.relative_error, error, off, int(known.rays[direction]), slope))

@@ -316,14 +316,15 @@ class Session:
         return run if self.prior is None else Extended(run, self.prior)
 
     def _judge(self, run, direction):
-        """Whether a direction is as accurate as asked for; None if its nodes will not let it be."""
+        """Whether a direction is as accurate as asked for; None if its nodes, or too little light, will not let it."""
         return self._journal.decide(lambda: self._verdict(run, direction))
 
     def _verdict(self, run, direction):
         target, run = self.simulation.target, self._known(run)
         if assembly.worst_error(self.plan, run, direction, target.of) <= target.relative_error:
             return True
-        return None if assembly.floor(self.plan, run, direction) >= target.relative_error else False
+        is_stuck = assembly.floor(self.plan, run, direction) >= target.relative_error
+        return None if is_stuck or assembly.is_too_faint(self.plan, run, direction) else False
 
     def _needed(self, run, direction):
         return needed(self.plan, run, self._known(run), direction, self.simulation.target)

@@ -100,12 +100,15 @@ class Standing:
         return asked.model_copy(update=free) == self.simulation.model_copy(update=free)
 
     def outweighs(self, result: Result) -> bool:
-        """Whether it is of the scene of a result and worth more: by its rays, or its noise if the estimators differ."""
+        """Whether it is of the scene of a result and worth more: by its rays, or its noise if the estimators differ.
+
+        Without noise it saw nothing, and is worth no more than one that saw something.
+        """
         if self.rays is None:
             return False
         if self.estimator == result.estimator:
             return bool(self.rays.sum() > result.rays.sum())
-        return not result.rays.all() or self.noise < _noise_of(result)
+        return not result.rays.all() or 0.0 < self.noise < _noise_of(result)
 
 
 def look_at(path: StrPath, scene: Scene | None, result: Result | None = None) -> Standing | None:

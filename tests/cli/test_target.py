@@ -160,6 +160,15 @@ def test_rays_that_a_target_spread_count_together():
     assert not partial.holds(asked["target"])
 
 
+def test_what_saw_nothing_gives_way_to_another_estimator():
+    """It is without noise, and worth less for that."""
+    cost = SimpleNamespace(error={"transmission": np.array([[1e-9]])})
+    new = SimpleNamespace(rays=np.array([1000]), estimator="operator", cost=cost)
+    for noise, kept in ((0.0, False), (1e-10, True), (1e-8, False)):
+        there = Standing(np.array([10**6]), (), "complete", estimator="analog", noise=noise)
+        assert there.outweighs(new) == kept
+
+
 ONE = """
 material: {name: one, layers: [{interface: {type: lambert, rho: 1}}]}
 incident: {theta_deg: [0, 30]}
@@ -265,6 +274,33 @@ def test_a_target_that_nobody_lives_to_see_ends_with_a_word(goniosim, folder):
     # Nor is it tried again.
     code, _, err = call(goniosim, "--target 1e-12 --estimator split", "scene.yaml")
     assert code == 9 and "stays as it is" in err
+
+
+UNSEEN = """
+material:
+  name: unseen
+  layers:
+    - interface: {type: dielectric, eta: 1.0000001, alpha: 0.2}
+    - medium: {tau: 3}
+    - interface: {type: lambert, rho: 0.5}
+incident: {theta_deg: [89.999]}
+slice: {rows: 9, columns: 18}
+"""
+
+
+def test_a_target_on_what_nobody_sees_is_missed(goniosim, folder):
+    (folder / "unseen.yaml").write_text(UNSEEN)
+    code, out, err = goniosim("simulate", "unseen.yaml", "--target", "10%", "--max-time", "1s")
+    nothing = r"nothing was seen at 89.999 deg: at most \S+"
+    assert code == 9 and "target: 10 % of slice, at most 1 s: not reached" in out
+    assert re.search(rf"not reached with at most 1 s \(reflection/internal: {nothing}\); the result is kept", err)
+    for told in (out, goniosim("info", "unseen.h5")[1]):
+        assert re.search(rf"  reflection/internal   {nothing} \(target 10 % of slice\)\n", told)
+        assert "better" not in told and "Half the noise" not in told
+    # A black base is no target to miss.
+    (folder / "unseen.yaml").write_text(UNSEEN.replace("rho: 0.5", "rho: 0"))
+    code, out, _ = goniosim("simulate", "unseen.yaml", "--target", "10%", "--overwrite")
+    assert code == 0 and "  reflection/internal   dark: no light leaves this way" in out
 
 
 def test_a_target_beyond_its_limits_is_told_early(goniosim, folder):

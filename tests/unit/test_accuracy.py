@@ -26,9 +26,22 @@ def test_one_percent_of_the_sum_is_one_percent():
 
 
 @pytest.mark.parametrize("of", READINGS)
-def test_black_slices_are_sure(of):
-    dark = np.zeros_like(ENERGY)
-    assert measured(of, dark, dark, (np.zeros(2), np.zeros(2))) == 0.0
+def test_of_what_was_not_seen_no_error_is_known(of):
+    dark, none = np.zeros_like(ENERGY), (np.zeros(2), np.zeros(2))
+    assert measured(of, dark, dark, none) == np.inf
+    assert bound(of, dark, dark, none, SIZE, ONE, Paths(dark, 1000)) == np.inf
+    assert bound(of, dark, dark, none, SIZE, ONE, Batches(dark, dark, np.zeros((32, 2, 2, 3))), 0.1) == np.inf
+
+
+@pytest.mark.parametrize("of", READINGS)
+def test_nor_of_what_is_too_faint_to_have_squares(of):
+    """All replicates differ, and not one of their deviations has a square that is a number."""
+    faint, total = 1e-165 * ENERGY, tuple(1e-165 * each for each in TOTAL)
+    assert measured(of, 0.0 * faint, faint, total) == np.inf
+    bright, dim = ENERGY[0], 1e-165 * ENERGY[0]
+    both, totals = np.stack([bright, dim]), (np.array([1.1, 1.1e-165]), np.array([0.011, 0.0]))
+    # Beside what is seen it does not count.
+    assert measured(of, np.stack([0.01 * bright, 0.0 * dim]), both, totals) == pytest.approx(0.01)
 
 
 def test_the_norm_weighs_cells_by_their_size_and_leaves_out_what_is_not_valid():

@@ -1,5 +1,6 @@
 """What a run still takes to a target, from its checkpoints."""
 
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -35,6 +36,14 @@ def test_two_rounds_of_replicates_tell_how_their_noise_falls(needed):
 
 def test_a_single_round_of_replicates_tells_nothing(needed):
     assert needed(run_of(1.0)) == (0.1, None)
+
+
+def test_of_what_was_not_seen_only_the_least_is_told(needed, monkeypatch):
+    """A path seen at once would be an error of 100 %: 1 % takes a hundred times as many, of independent ones 10,000."""
+    monkeypatch.setattr(outlook.assembly, "worst_error", lambda *_: math.inf)
+    assert needed(run_of(0.0)) == (math.inf, None)
+    assert needed(run_of(0.0, 0.0)) == (math.inf, pytest.approx(70_000.0))
+    assert needed(run_of(), SimpleNamespace(rays=[1000])) == (math.inf, pytest.approx(1e7))
 
 
 def test_what_goes_on_from_others_needs_no_rounds_of_its_own(needed):

@@ -30,7 +30,7 @@ def analog_rays(plan, seed, target, drive):
     Returns
     -------
     rays, events : ndarray, shape (M,)
-        And the events of them.
+        And the events of them. Infinite where the pilot saw nothing, which says nothing.
     """
     sides = tuple(side for side in (0, 1) if plan.slots[side, 1] > 0)
     run = AnalogRun(plan, child_key(seed, BRANCH), sides)

@@ -11,7 +11,7 @@ from ...scene import Scene
 from ..check import Check, in_sigmas, relative, statement
 from ..energy import closes, sane
 from ..oracles import adding
-from ..variants import varied
+from ..variants import labelled, varied
 from ..ways import by_estimator, excess
 
 # Numbers of rays that no power of two divides, around the sizes at which replicates begin and are divided.
@@ -87,7 +87,7 @@ def odd_numbers_of_rays(scene: Scene) -> Iterator[Check]:
 
 
 def a_pilot_that_sees_nothing(scene: Scene) -> Iterator[Check]:
-    """At 89.999 degrees 4e-5 of the light enters: no estimator takes nothing seen for nothing there."""
+    """At 89.999 degrees 4e-5 of the light enters, at 89.9999999 less than 2e-8: nothing seen is not nothing there."""
     exact = adding.energies(scene)
     for name, result in by_estimator(scene):
         value, stderr = result.albedo("reflection/internal")
@@ -95,6 +95,18 @@ def a_pilot_that_sees_nothing(scene: Scene) -> Iterator[Check]:
         yield statement(f"{name}: has an error", (stderr > 0.0).all(), "more than 0", f"{stderr.min():.1g}")
         yield closes(result)
         yield sane(result)
+    yield from labelled("target of 5 % at 89.9999999 degrees", _targets(scene))
+
+
+def _targets(scene: Scene) -> Iterator[Check]:
+    """A target where the pilot, and independent paths after it, see nothing."""
+    asked = {"target": {"relative_error": 0.05}, "max_rays": 1_000_000, "seed": scene.simulation.seed}
+    darker = varied(scene, {"incident.theta_deg": [89.9999999], "simulation": asked})
+    result, analog = simulate(darker), simulate(darker, estimator="analog")
+    value, stderr = result.albedo("reflection/internal")
+    yield in_sigmas("albedo", value, stderr, adding.energies(darker).internal)
+    yield statement("it was reached", result.target_reached is True, "yes", result.target_reached)
+    yield statement("analog: it was reached", analog.target_reached is False, "no", analog.target_reached)
 
 
 def a_lobe_narrower_than_a_cell(scene: Scene) -> Iterator[Check]:

@@ -3,9 +3,14 @@
 import numpy as np
 
 from ...accuracy import bound, relative_error
+from ...albedo import arrived
+from ...engine.estimate import COMPONENT_OF
+from ...engine.plan import make_plan
+from ...engine.reach import most_light
 from ...scene import parse_scene
 from ...sums import noise_of
 from .. import text
+from .audit import unseen
 from .trend import trend
 
 # What is told of more accuracy.
@@ -31,6 +36,10 @@ def accuracy_lines(result):
     for name in names:
         found, bounds = errors(result, name, of)
         worst = int(np.argmax(found if target is None else bounds))
+        if np.isinf(found[worst]) or not arrived(result.components[name]).any():
+            known = unknown(result, name, worst) if np.isinf(found[worst]) else "dark: no light leaves this way"
+            lines.append(f"  {name.ljust(width)}   {known}" + ("" if target is None else f" (target {target})"))
+            continue
         angle = text.angles(result.theta_deg)[worst]
         held = "" if target is None else f", nine in ten errors below {100.0 * bounds[worst]:.2g} % (target {target})"
         course = trend(result, name)
@@ -47,7 +56,8 @@ def errors(result, name, of):
     Returns
     -------
     relative_errors, bounds : ndarray, shape (M,)
-        Standard errors, and what a target is held against.
+        Standard errors, and what a target is held against; infinite where too little was seen to know them, and 0
+        where no light can leave or none was traced.
     """
     component = result.components[name]
     size = np.where(result.cells.valid, result.cells.projected_solid_angle, 0.0)
@@ -58,4 +68,38 @@ def errors(result, name, of):
         slices = of, component.energy[m], component.stderr[m], total, size[m], weights
         bias = None if component.node_bias is None else component.node_bias[m]
         found.append((relative_error(*slices), bound(*slices, noise_of(component, m, result.rays[m]), bias)))
-    return np.array(found).T
+    made = np.array(found).T
+    if np.isinf(made).any():
+        made[:, np.isinf(made[0]) & (_is_dark(result, name) | (result.rays == 0))] = 0.0
+    return made
+
+
+def unknown(result, name, direction):
+    """Say why the error of a component is unknown in a direction.
+
+    Parameters
+    ----------
+    result : goniosim.result.Result
+    name : str
+    direction : int
+
+    Returns
+    -------
+    str
+        ``nothing was seen at 89 deg: at most 2e-05``, or that it is too little.
+    """
+    at = f"at {text.angles(result.theta_deg)[direction]} deg"
+    if is_too_faint(result, name, direction):
+        return f"too little was seen {at} for an error to be known, by any number of rays"
+    return f"nothing was seen {at}: at most {unseen(result, direction)}"
+
+
+def is_too_faint(result, name, direction):
+    """Of a component whose error is unknown in a direction: whether something was seen, of which no rays tell more."""
+    return bool(arrived(result.components[name])[direction].any())
+
+
+def _is_dark(result, name):
+    plan = make_plan(parse_scene(result.config_yaml))
+    (side,) = (side for side, of in COMPONENT_OF.items() if of == name)
+    return np.array([most_light(plan, side, m) == 0.0 for m in range(len(result.theta_deg))])

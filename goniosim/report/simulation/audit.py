@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...accuracy import FAINTEST
 from ...albedo import arrived
 from .. import text
 from .losses import masking_lines
@@ -62,8 +63,16 @@ def _albedo(result, name, value, stderr, i, c):
     component = result.components[name]
     if component.sampled and not arrived(component)[i, c]:
         # Not seen is not zero: this is its limit at 95 % confidence.
-        return f"< {RULE_OF_THREE / result.rays[i]:.1g}"
+        return f"< {unseen(result, i)}"
+    if component.sampled and 0.0 < value[i, c] < FAINTEST:
+        # What is stated of its error, if anything, is rounding.
+        return f"about {value[i, c]:.1g}"
     return text.with_error(value[i, c], stderr[i, c])
+
+
+def unseen(result, direction):
+    """What may have been there in a direction though nothing was seen, at 95 % confidence, in words."""
+    return f"{min(RULE_OF_THREE / max(result.rays[direction], 1), 1.0):.1g}"
 
 
 def audit_lines(result):

@@ -44,14 +44,18 @@ def cost_lines(result):
             f"  {text.count(total)} rays in {text.duration(seconds)}: {text.rate(total / seconds)}, "
             f"{text.rate(total / cpu_seconds, per='CPU-second')}."
         )
-        courses = [trend(result, name) for name in noise]
-        hardest = max(courses, key=lambda course: course.seconds_for(2.0))
-        times = hardest.rays_for(2.0)
-        lines.append(
-            f"  Half the noise takes {times:.2g} times the rays: {text.count(round(times * result.rays.max()))} "
-            f"per direction, {hardest.about} {text.duration(hardest.seconds_for(2.0))} on this machine."
-        )
+        # Where there is no noise, nothing was seen, or all paths are alike.
+        courses = [trend(result, name) for name, error in noise.items() if error[-1] > 0.0]
+        lines += [_half(result, max(courses, key=lambda course: course.seconds_for(2.0)))] if courses else []
     return lines
+
+
+def _half(result, hardest):
+    times = hardest.rays_for(2.0)
+    return (
+        f"  Half the noise takes {times:.2g} times the rays: {text.count(round(times * result.rays.max()))} "
+        f"per direction, {hardest.about} {text.duration(hardest.seconds_for(2.0))} on this machine."
+    )
 
 
 def _spread(n):

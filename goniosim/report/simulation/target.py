@@ -61,9 +61,13 @@ def far(simulation, outlook):
         One line.
     """
     names = " and ".join(COMPONENT_OF[side] for side in outlook.sides)
+    more = f"{_paths_and_time(outlook.needed, outlook.seconds)} more"
+    beyond = f", beyond the limits: {limits(simulation)}" if outlook.is_cut else ""
+    if np.isinf(outlook.error):
+        at = f"of {names} too little was seen for an error after {text.count(outlook.paths)} rays per direction"
+        return f"{at}; the target of {simulation.target} takes over {more}{beyond}"
     at = f"{names} is at {100.0 * outlook.error:.2g} % after {text.count(outlook.paths)} rays per direction"
-    takes = f"the target of {simulation.target} takes about {_paths_and_time(outlook.needed, outlook.seconds)} more"
-    return f"{at}; {takes}" + (f", beyond the limits: {limits(simulation)}" if outlook.is_cut else "")
+    return f"{at}; the target of {simulation.target} takes about {more}{beyond}"
 
 
 def _paths_and_time(paths, seconds):
@@ -90,8 +94,22 @@ def shortfall(simulation, result=None):
     remedy = f"raise {' or '.join(names)}, or ask for less" if names else "ask for less"
     if simulation.estimator == "operator":
         remedy += ", or leave the estimator to auto: what nodes may be off by limits this one"
-    price = "" if result is None else _price(simulation.target, result)
+    unknown = result and _unknown(simulation.target, result)
+    if unknown:
+        price = f" ({unknown[0]}: {accuracy.unknown(result, *unknown)})"
+        remedy = "ask for rays instead" if accuracy.is_too_faint(result, *unknown) else remedy
+    else:
+        price = "" if result is None else _price(simulation.target, result)
     return f"the target of {simulation.target} was not reached{within}{price}; the result is kept: {remedy}"
+
+
+def _unknown(target, result):
+    """Name and direction of a component whose error is unknown; None if all are known."""
+    for name in (name for name, component in result.components.items() if component.sampled):
+        _, bounds = accuracy.errors(result, name, target.of)
+        if np.isinf(bounds).any():
+            return name, int(np.argmax(bounds))
+    return None
 
 
 def _price(target, result):
