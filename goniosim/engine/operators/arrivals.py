@@ -7,10 +7,11 @@ paths do not depend on what waits beside them, but for the coin that takes the p
 """
 
 from ..._jit import kernel, stage
+from ...optics.fresnel import fresnel_dielectric
 from ...optics.random import derive_key
 from ..lattice import DIMENSIONS
 from ..loops import colour, scale, share_out
-from ..stages import LAMBERT, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR
+from ..stages import LAMBERT, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 from ..stages.lambert import RHO
 from ..stages.smooth_conductor import ETA, KAPPA
 from ..walk import ABOVE, BELOW, MAX_ROUNDS, fullest
@@ -52,6 +53,8 @@ from .rays import (
 SHIFTS, PATHS = 0, 1
 # Dimensions of the lattice that entry takes; the first event inside takes the rest.
 _ENTRY = DIMENSIONS // 2
+# Where less than the reciprocal enters, that matters.
+_LITTLE = 10.0
 
 
 @kernel
@@ -86,6 +89,7 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
     to_horizon, half_turn = bins.shape[2] // channels - 1, bins.shape[1] - 1
     slots = bins.shape[0] // keys.shape[0]
     most = steps.shape[0]
+    usual = FAINT * _entering(kinds[0], light, etas[0])
     stop_at = state[EVENTS] + budget
     while state[EVENTS] < stop_at:
         q = fullest(filled)
@@ -168,11 +172,23 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
             up = (through == 1) == (side == BELOW)
             q = 2 * (k - 1) + BELOW if up else 2 * (k + 1) + ABOVE
             # What arrives next at the interface is binned first: it may be all that a dim base sends back.
-            faint = NEVER if q == 2 * target[0] + target[1] else FAINT
+            faint = NEVER if q == 2 * target[0] + target[1] else usual
             play(batch[KEY], n, through, faint, scratch[BRIGHTEST], scratch[GAIN], scratch[NEXT_KEY])
             first = Z if kinds[q // 2] == LAMBERT else X
             filled[q] += push(batch, n, channels, scratch, steps, lists, queues[q], filled[q], first)
     return False
+
+
+@stage
+def _entering(kind, light, eta):
+    """Some times the share of the light that enters, and 1 at the most.
+
+    Beside that a ray is faint: next to the horizon all of them would be, and the light of the few that live on be missed.
+    """
+    if kind != SMOOTH_DIELECTRIC:
+        return 1.0
+    reflectance, _ = fresnel_dielectric(max(light[2], LEAST_COSINE), eta)
+    return min(1.0, _LITTLE * (1.0 - reflectance))
 
 
 @stage
