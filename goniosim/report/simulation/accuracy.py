@@ -4,6 +4,7 @@ import numpy as np
 
 from ...accuracy import bound, relative_error
 from ...scene import parse_scene
+from ...scene.quantity import percent
 from ...sums import noise_of
 from .. import text
 from .trend import trend
@@ -32,12 +33,12 @@ def accuracy_lines(result):
         found, bounds = errors(result, name, of)
         worst = int(np.argmax(found if target is None else bounds))
         angle = text.angles(result.theta_deg)[worst]
-        held = "" if target is None else f", nine in ten errors below {100.0 * bounds[worst]:.2g} % (target {target})"
+        held = "" if target is None else f", nine in ten errors below {percent(bounds[worst])} (target {target})"
         course = trend(result, name)
         more = ", ".join(
             f"{factor} times better {course.about} {text.duration(course.seconds_for(factor))}" for factor in FACTORS
         )
-        lines.append(f"  {name.ljust(width)}   {100.0 * found[worst]:.2g} % at {angle} deg{held}; {more}")
+        lines.append(f"  {name.ljust(width)}   {percent(found[worst])} at {angle} deg{held}; {more}")
     return lines if names else []
 
 

@@ -5,6 +5,7 @@ import numpy as np
 from ...accuracy import norm, paths_for
 from ...engine.estimate import COMPONENT_OF
 from ...scene.model import LIMITS
+from ...scene.quantity import percent
 from .. import text
 from . import accuracy
 from .trend import trend
@@ -61,7 +62,7 @@ def far(simulation, outlook):
         One line.
     """
     names = " and ".join(COMPONENT_OF[side] for side in outlook.sides)
-    at = f"{names} is at {100.0 * outlook.error:.2g} % after {text.count(outlook.paths)} rays per direction"
+    at = f"{names} is at {percent(outlook.error)} after {text.count(outlook.paths)} rays per direction"
     takes = f"the target of {simulation.target} takes about {_paths_and_time(outlook.needed, outlook.seconds)} more"
     return f"{at}; {takes}" + (f", beyond the limits: {limits(simulation)}" if outlook.is_cut else "")
 
@@ -106,7 +107,7 @@ def _price(target, result):
     paths, seconds, held = max(found, default=(0.0, 0.0, 0.0))
     if not held > target.relative_error or not 0.0 < paths < np.inf:
         return ""
-    return f" (it is at {100.0 * held:.2g} %, and takes about {_paths_and_time(paths, seconds)} in all)"
+    return f" (it is at {percent(held)}, and takes about {_paths_and_time(paths, seconds)} in all)"
 
 
 def _off(result, name, m):
