@@ -96,27 +96,6 @@ def problems_of(text, source="f.yaml"):
                 f"{MEDIUM}.thickness: {TAU} (did you mean tau: [0.2, 0.4, 0.6]?)",
             ],
         ),
-        # no suggestion that would be refused as well
-        (
-            "tau: 0.5",
-            "sigma_a: [0.1, 0.2], thickness: 2",
-            [
-                f"{MEDIUM}.sigma_a: {TAU} (did you mean tau?)",
-                f"{MEDIUM}.thickness: {TAU} (did you mean tau?)",
-                f"{MEDIUM}.sigma_a: must be one number for all channels or a list of three, for R, G and B: "
-                "this list has 2 [got tau: [0.2, 0.4]]",
-            ],
-        ),
-        (
-            "tau: 0.5",
-            "sigma_a: [0.1, -0.2, 0.3], thickness: 2",
-            [
-                f"{MEDIUM}.sigma_a: {TAU} (did you mean tau?)",
-                f"{MEDIUM}.thickness: {TAU} (did you mean tau?)",
-                f"{MEDIUM}.sigma_a[1]: must be 0 or more (1e9 at most): it is the optical depth, and 0 absorbs nothing "
-                "[got tau: -0.4]",
-            ],
-        ),
         ("tau: 0.5", "thickness: 2", [f"{MEDIUM}.thickness: {TAU} (did you mean tau?)"]),
         (
             "tau: 0.5",
