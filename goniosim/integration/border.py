@@ -79,6 +79,7 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
     n = nodes.shape[0]
     count = n * n
     f = np.empty(count)
+    scale = np.empty(n)
     for k in range(weight.shape[0] // count):
         place = quarter[start + k]
         if place < 0:
@@ -87,11 +88,13 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
         low = parts[start + k, U]
         high = low + parts[start + k, D_U]
         middle = high if place < 2 else low
+        # A division within the product below would be rounded in one of two ways, by where in memory the arrays lie.
+        for i in range(n):
+            scale[i] = middle / (low + (high - low) * nodes[i])
         for c in range(values.shape[0]):
             for i in range(n):
-                scale = middle / (low + (high - low) * nodes[i])
                 for j in range(i * n, (i + 1) * n):
-                    f[j] = values[c, k * count + j] * weight[k * count + j] * scale
+                    f[j] = values[c, k * count + j] * weight[k * count + j] * scale[i]
             row = told[start + k, c]
             # Four at a time: one sum alone would wait for itself.
             for p in range(0, TOLD, 4):
