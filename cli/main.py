@@ -38,7 +38,7 @@ To begin:
 \b
 Exit codes:
   0    success
-  1    a bug in goniosim; --debug shows where
+  1    a bug in goniosim; --debug shows where; or a hard case failed
   2    the command line is wrong
   3    the scene file or an override is wrong
   4    the output cannot be written or would replace something, or memory is short

@@ -35,6 +35,8 @@ def merge(ctx, sources, output, allow_missing, only, threads, overwrite, quiet):
               goniosim merge shards -o out --allow-missing
               goniosim merge seed1.h5 seed2.h5 -o better.h5
     """  # noqa: D301
+    if output == "-":
+        raise click.UsageError("a result is a file, not a stream: name it with -o")
     from goniosim.cluster import merge as join
     from goniosim.cluster import merge_results
     from goniosim.errors import TARGET_NOT_REACHED

@@ -8,7 +8,7 @@ a traceback appears only with ``--debug``.
 code  meaning
 ====  =========================================================
 0     success
-1     an unexpected fault: a bug in goniosim
+1     an unexpected fault: a bug in goniosim; or a hard case failed
 2     the command line itself is wrong (unknown option, ...)
 3     the scene file or an override is wrong
 4     the output cannot be written (permission, disk full, ...),

@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import os
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -84,6 +85,34 @@ def explained(path: StrPath) -> Iterator[None]:
         raise OutputError(f"{path}: cannot be written: {reason(error)}; {remedy(error)}") from error
 
 
+def refuse_to_replace(path: StrPath) -> None:
+    """Make sure that nothing but a file would be replaced, and none that is read-only.
+
+    A finished file takes the name of the one before it, whatever that is: the system would not object.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Raises
+    ------
+    OutputError
+        A folder, a device, a pipe or a socket stands there, or a file that nobody may write to.
+    """
+    with explained(path):
+        try:
+            mode = os.stat(path).st_mode
+        except (FileNotFoundError, NotADirectoryError):
+            return
+        if stat.S_ISDIR(mode):
+            raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not stat.S_ISREG(mode):
+        raise OutputError(f"{path}: exists and is not a regular file, so it is not replaced; choose another name")
+    # Of root the system says that he may write to it.
+    if not mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
+        raise OutputError(f"{path}: exists and is read-only, so it is not overwritten; choose another name or chmod +w")
+
+
 class Replacement:
     """A file in the making, beside the one that it will replace.
 
@@ -100,11 +129,12 @@ class Replacement:
     Raises
     ------
     OutputError
-        The folder takes no new file.
+        The folder takes no new file, or what stands there must stay.
     """
 
     def __init__(self, path: StrPath) -> None:
         self._path = path
+        refuse_to_replace(path)
         self._target = Path(os.path.realpath(path))
         remove_dead([self._target])
         with explained(path):
@@ -113,6 +143,8 @@ class Replacement:
 
     def commit(self) -> None:
         """Put the finished file in place: readers see the old file or the new one, never a mixture."""
+        # Meanwhile something else may stand there.
+        refuse_to_replace(self._path)
         with explained(self._path):
             self._part.move(self._target)
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..errors import UnusableResultError
+from ..scene.quantity import percent
 from . import assembly
 from .combining import combined
 from .estimate import COMPONENT_OF
@@ -138,5 +139,5 @@ def _require_room(plan, choice, prior, target):
         floor = max(assembly.floor(plan, past, m) for m in range(len(plan.theta_deg)))
         if floor >= MOST_OF_TARGET * target.relative_error:
             raise OtherEstimatorError(
-                f"nodes of {choice.estimator} may be off by {100.0 * floor:.2g} %, which leaves no room in the target"
+                f"nodes of {choice.estimator} may be off by {percent(floor)}, which leaves no room in the target"
             )

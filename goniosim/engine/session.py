@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import UnusableResultError
 from ..provenance import version_of
+from ..scene.quantity import percent
 from . import assembly
 from .analog import AnalogRun
 from .drive import Drive, Limit
@@ -350,7 +351,7 @@ class Session:
         floor = max(assembly.floor(self.plan, run, m) for m in range(len(self.plan.theta_deg)))
         if self.simulation.estimator != AUTO or floor < MOST_OF_TARGET * target.relative_error:
             return None
-        return f"{run.name}: its nodes may be off by {100.0 * floor:.2g} %, which leaves no room in the target"
+        return f"{run.name}: its nodes may be off by {percent(floor)}, which leaves no room in the target"
 
 
 def _misfit(why):

@@ -1,7 +1,6 @@
 """What is checked of a case: the expected and the found, and how far apart they may be."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -127,6 +126,15 @@ def statement(checked: str, holds: Any, expected: object, got: object) -> Check:
     return Check(checked, str(expected), str(got), None, "", None, bool(holds))
 
 
+def whether(checked: str, expected: bool, found: Any) -> Check:
+    """State what is to be so, or not to be so; what is neither true nor false fails, and is shown as it is."""
+    return statement(checked, found == expected, _in_words(expected), _in_words(found))
+
+
+def _in_words(answer: Any) -> str:
+    return {True: "yes", False: "no"}.get(answer, str(answer))
+
+
 def _worst(deviations: np.ndarray) -> tuple[np.intp, ...]:
     # What is not a number is the worst there is.
     return np.unravel_index(np.argmax(np.where(np.isnan(deviations), math.inf, deviations)), deviations.shape)
@@ -138,8 +146,3 @@ def _judged(checked: str, expected: str, got: str, deviation: float, unit: str, 
 
 def _of_many(checked: str, values: np.ndarray) -> str:
     return checked if values.size == 1 else f"{checked} (worst of {values.size})"
-
-
-def all_hold(checks: Sequence[Check]) -> bool:
-    """Whether there are checks, and each of them holds."""
-    return bool(checks) and all(check.holds for check in checks)

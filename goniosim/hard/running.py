@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from .catalogue import Case
-from .check import Check, all_hold, statement
+from .check import Check, statement, whether
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Outcome:
     ----------
     case : Case
     checks : tuple of Check
-        Those made before an error, and one that tells it, if there was one.
+        Those made before an error, and one that tells it, if there was one; one that fails, if there were none.
     seconds : float
     """
 
@@ -26,8 +26,8 @@ class Outcome:
 
     @property
     def holds(self) -> bool:
-        """Whether something was checked, and all of it holds."""
-        return all_hold(self.checks)
+        """Whether all of it holds."""
+        return all(check.holds for check in self.checks)
 
 
 def run(cases: Iterable[Case]) -> Iterator[Outcome]:
@@ -50,4 +50,6 @@ def run(cases: Iterable[Case]) -> Iterator[Outcome]:
         except Exception as error:
             message = " ".join(f"{type(error).__name__}: {error}".split())
             made.append(statement("runs to its end", False, "no error", message))
+        if not made:
+            made.append(whether("something is checked", True, False))
         yield Outcome(case, tuple(made), time.perf_counter() - began)

@@ -1,33 +1,18 @@
 """The table of hard cases: as text, as JSON, and as Markdown."""
 
-import difflib
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import Any
 
-from ..errors import ConfigError
 from ..report.text import counted, duration, table
-from .catalogue import CASES, Case
+from .catalogue import Case
 from .check import Check
 from .running import Outcome
 
+TITLE = "# Hard cases"
 HEADER = ("checked", "expected", "got", "deviation", "verdict")
-# Wider columns are not lined up: one long message would push everything aside.
-WIDEST = 56
-
-
-def chosen(names: Sequence[str]) -> list[Case]:
-    """Return the cases of those names, or all of them if there are none.
-
-    Raises
-    ------
-    goniosim.errors.ConfigError
-        There is no such case; one line for each name.
-    """
-    unknown = [name for name in names if name not in CASES]
-    if unknown:
-        raise ConfigError([_unknown(name) for name in unknown])
-    return [case for name, case in CASES.items() if not names or name in names]
+# One long message would push everything aside. Of what is cut the end stays: which of how many it is.
+WIDEST, END = 60, 24
 
 
 def listing(cases: Iterable[Case]) -> str:
@@ -40,6 +25,11 @@ def listing(cases: Iterable[Case]) -> str:
     return "\n".join(lines)
 
 
+def names(cases: Iterable[Case]) -> list[dict[str, str]]:
+    """Return name, topic and title of each case, for JSON."""
+    return [{"name": case.name, "topic": case.topic, "title": case.title} for case in cases]
+
+
 def case_text(outcome: Outcome) -> str:
     """Lay out what became of one case."""
     rows = [tuple(_short(text) for text in _cells(check)) for check in outcome.checks]
@@ -49,9 +39,13 @@ def case_text(outcome: Outcome) -> str:
 
 def verdict(outcomes: Sequence[Outcome]) -> str:
     """Sum up in one sentence, the same on every machine, and name the cases that fail."""
+    checks = [check for outcome in outcomes for check in outcome.checks]
+    what = f"{counted(len(outcomes), 'case')}, {counted(len(checks), 'check')}"
     failed = [outcome.case.name for outcome in outcomes if not outcome.holds]
-    what = f"{counted(len(outcomes), 'case')}, {counted(sum(len(each.checks) for each in outcomes), 'check')}"
-    return f"{what}: " + (f"{len(failed)} failed: {', '.join(failed)}" if failed else "all hold")
+    if not failed:
+        return f"{what}: all hold"
+    many = counted(sum(not check.holds for check in checks), "check")
+    return f"{what}: {many} failed, in {counted(len(failed), 'case')}: {', '.join(failed)}"
 
 
 def rows(outcomes: Iterable[Outcome]) -> list[dict[str, Any]]:
@@ -59,6 +53,9 @@ def rows(outcomes: Iterable[Outcome]) -> list[dict[str, Any]]:
     return [
         {
             "case": outcome.case.name,
+            "title": outcome.case.title,
+            # Of the whole case.
+            "seconds": round(outcome.seconds, 3),
             "checked": check.checked,
             "expected": check.expected,
             "got": check.got,
@@ -76,13 +73,17 @@ def rows(outcomes: Iterable[Outcome]) -> list[dict[str, Any]]:
 def markdown(outcomes: Sequence[Outcome]) -> str:
     """Write the page of the documentation."""
     lines = [
-        "# Hard cases",
+        TITLE,
         "",
         "Scenes at the edges of what can be described, each held against what is exactly known of it. Written by",
         "`goniosim hard -o docs/hard_cases.md`, which checks the same on any machine; `goniosim hard NAME` checks one.",
         "The scenes stand in `configs/hard`. Where several numbers are compared, the table tells the one that is",
         "furthest off. A right number is more than 6 standard errors off in 2e-9 of all seeds if it is normally",
         "distributed, in 1e-6 if its error comes from 32 replicates; seeds are fixed.",
+        "",
+        "*Exact adding* tells where light goes in a stack of smooth interfaces, put together one by one from below, in",
+        "closed form. *Sums over its slopes* tell it of a rough interface: by Gauss's rule, over facets of all slopes.",
+        "The *audit* of a simulation books all light that arrives: as reflected, transmitted, absorbed or lost.",
         "",
         "Beyond these cases: [every function against 40 digits](precision.md); random legal scenes held to laws",
         "(`tests/laws`: 100 in `make test`, 2280 in `make test-all`); random numbers in the orders in which",
@@ -110,14 +111,8 @@ def _verdict(check: Check) -> str:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
+    return text if len(text) <= WIDEST else f"{text[: WIDEST - END - 3]}...{text[-END:]}"
 
 
 def _line(cells: Iterable[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
-
-
-def _unknown(name: str) -> str:
-    near = difflib.get_close_matches(name, CASES, n=1)
-    remedy = f"did you mean {near[0]}?" if near else "see goniosim hard --list"
-    return f"{name}: no hard case has this name; {remedy}"

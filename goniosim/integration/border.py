@@ -79,6 +79,7 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
     n = nodes.shape[0]
     count = n * n
     f = np.empty(count)
+    scale = np.empty(n)
     for k in range(weight.shape[0] // count):
         place = quarter[start + k]
         if place < 0:
@@ -87,8 +88,11 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
         low = parts[start + k, U]
         high = low + parts[start + k, D_U]
         middle = high if place < 2 else low
+        # A division within the product would be rounded in one of two ways, where that becomes SIMD code or not.
+        for i in range(n):
+            scale[i] = middle / (low + (high - low) * nodes[i])
         for c in range(values.shape[0]):
-            _integrand(values[c, k * count :], weight[k * count :], nodes, low, high, middle, f)
+            _integrand(values[c, k * count :], weight[k * count :], scale, f)
             row = told[start + k, c]
             # Four at a time: one sum alone would wait for itself.
             for p in range(0, TOLD, 4):
@@ -108,16 +112,16 @@ def foretell(values, weight, parts, nodes, weights, quarter, start, told):
 
 
 @stage
-def _integrand(values, weight, nodes, low, high, middle, f):
+def _integrand(values, weight, scale, f):
     """Values of the integrand at the nodes of a quarter, over the row coordinate."""
-    n = nodes.shape[0]
+    n = scale.shape[0]
     for i in range(n):
-        scale = middle / (low + (high - low) * nodes[i])
+        factor = scale[i]
         here = f[i * n : (i + 1) * n]
         value = values[i * n : (i + 1) * n]
         area = weight[i * n : (i + 1) * n]
         for j in range(n):
-            here[j] = value[j] * area[j] * scale
+            here[j] = value[j] * area[j] * factor
 
 
 def retell(density, grid, rule, rectangles, pool):

@@ -11,7 +11,7 @@ from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.problems import Problem, closest, listed
 from goniosim.scene.quantity import NO_NUMBER
 from goniosim.scene.structure import structure_mistakes
-from goniosim.scene.target import Target
+from goniosim.scene.target import Share, Target
 from goniosim.scene.tree import Node, Path, locate, plain
 
 MAPPINGS: dict[str, type[Part]] = {
@@ -95,7 +95,8 @@ def _translate(root: Node, detail: ErrorDetails) -> Problem:
         return node.problem("must be a list: begin each entry with `- `")
     if kind in ("model_type", "model_attributes_type"):
         keys = _known(location)
-        return node.problem(f"must be a mapping with {listed(keys, 'or' if keys == _LAYER else 'and')}")
+        remedy = f": write target: {{relative_error: {_share_meant(node.value)}}}" if path[-1:] == ("target",) else ""
+        return node.problem(f"must be a mapping with {listed(keys, 'or' if keys == _LAYER else 'and')}{remedy}")
     return _explain(node, path, detail["msg"])
 
 
@@ -104,6 +105,10 @@ def _explain(node: Node, path: Path, message: str) -> Problem:
     whole = path[-1] in MAPPINGS or path[-2:-1] == ("layers",)
     hint, suggestion = value_hint(path[-1], node.value) if message.startswith(NO_NUMBER) else ("", None)
     return node.problem(message + hint, got=not whole, suggestion=suggestion)
+
+
+def _share_meant(value: object) -> str:
+    return str(value) if Share().accepts(value) else "1%"
 
 
 def _known(location: Path) -> list[str]:

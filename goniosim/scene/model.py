@@ -60,7 +60,8 @@ class Angles(Checked):
     def check(self, value: object) -> tuple[float, ...]:
         """Return a tuple of angles in degrees, or raise the mistakes in it."""
         if not isinstance(value, (list, tuple)):
-            raise mistake("must be a list of angles in degrees, such as [0, 30, 60]")
+            example = f": write [{value}]" if Theta.accepts(value) else ", such as [0, 30, 60]"
+            raise mistake(f"must be a list of angles in degrees{example}")
         if not value:
             raise mistake("must hold at least one angle, such as [45]")
         if len(value) > MAX_DIRECTIONS:

@@ -63,6 +63,14 @@ class Checked(ABC):
     def json_schema(self) -> dict[str, Any]:
         """JSON Schema of such a value."""
 
+    def accepts(self, value: object) -> bool:
+        """Whether there is no mistake in a value."""
+        try:
+            self.check(value)
+        except (PydanticCustomError, ValidationError):
+            return False
+        return True
+
     def flaw(self, text: str) -> str | None:
         """What is wrong with a value as a scene file would write it, or None."""
         try:
@@ -245,3 +253,19 @@ def count(number: float) -> str:
     mantissa, exponent = f"{number:.3e}".split("e")
     mantissa = mantissa.rstrip("0").rstrip(".")
     return f"{mantissa}e{int(exponent)}"
+
+
+def percent(share: float, digits: int = 2) -> str:
+    """Format a share as a percentage: ``0.03 %``, ``99.9 %``, ``100 %``, ``250 %``.
+
+    Parameters
+    ----------
+    share : float
+    digits : int
+        More where these would take an exponent, up to a million.
+    """
+    value = 100.0 * share
+    shown = f"{value:.{digits}g}"
+    if "e+" in shown and value < 1e6:
+        shown = f"{value:.3g}" if value < 999.5 else f"{value:.0f}"
+    return f"{shown} %"

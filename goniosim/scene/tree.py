@@ -24,11 +24,14 @@ class Origin:
         Line in that file, from 1; 0 where there are no lines.
     path : tuple of str and int
         Keys and indices that lead to the value in what the user wrote.
+    worked_out : str
+        The key under which the value belongs, if it is not the one that was written but follows from it.
     """
 
     source: str
     line: int
     path: Path = ()
+    worked_out: str = ""
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,8 @@ class Node:
         """
         path = show_path(self.origin.path + tuple(below))
         shown = show(plain(self)) if got else None
+        if shown is not None and self.origin.worked_out:
+            shown = f"{self.origin.worked_out}: {shown}"
         return Problem(self.origin.source, self.origin.line, path, message, shown, suggestion)
 
 

@@ -12,7 +12,7 @@ from goniosim.errors import OutputError
 from goniosim.parts import Part, remove_dead, turn
 from goniosim.store.kinds import RESULT, Kind
 from goniosim.store.opening import is_unreadable, kind_of
-from goniosim.writing import NO_ROOM, StrPath, explained, remedy
+from goniosim.writing import NO_ROOM, StrPath, explained, refuse_to_replace, remedy
 
 Buffer = bytes | memoryview
 
@@ -200,6 +200,7 @@ def _refuse_to_destroy(target: Path, shown: StrPath, kind: Kind) -> None:
         raise OutputError(
             f"{shown}: exists and is not {kind.what}, so it is not overwritten; choose another name or remove it"
         )
+    refuse_to_replace(shown)
 
 
 def _write(descriptor: int, parts: Sequence[Buffer]) -> None:

@@ -39,3 +39,10 @@ def test_what_is_not_to_be_merged_is_refused(goniosim, seeds):
     assert code == 2 and "1.h5 is a single file" in err
     code, _, err = goniosim("merge", "1.h5", "2.h5", "--allow-missing", "-o", "more.h5")
     assert code == 2 and "go with a folder of shards" in err
+
+
+def test_a_stream_is_refused(goniosim, folder):
+    before = sorted(folder.iterdir())
+    code, out, err = goniosim("merge", "a.h5", "b.h5", "-o", "-")
+    assert code == 2 and "a result is a file, not a stream" in err
+    assert sorted(folder.iterdir()) == before

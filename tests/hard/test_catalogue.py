@@ -1,5 +1,6 @@
 """The catalogue of hard cases: each holds, is explained, and is found."""
 
+import copy
 import dataclasses
 import math
 
@@ -7,9 +8,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from goniosim.hard import CASES, check, run
+from goniosim.hard import CASES, Outcome, check, run
 from goniosim.hard.catalogue import SCENES, Case
-from goniosim.hard.table import rows, verdict
+from goniosim.hard.table import case_text, markdown, rows, verdict
+from goniosim.hard.topics.randomness import _first_difference
+from goniosim.hard.ways import by_estimator
 from goniosim.scene import with_arguments
 
 # Take longer than about two seconds.
@@ -88,13 +91,48 @@ def test_an_error_in_a_case_is_a_check_that_fails():
     (outcome,) = run([Case("smooth_stacks", "none", breaks)])
     assert [each.holds for each in outcome.checks] == [True, False]
     assert not outcome.holds
-    assert verdict([outcome]) == "1 case, 2 checks: 1 failed: smooth_stacks"
+    assert verdict([outcome]) == "1 case, 2 checks: 1 check failed, in 1 case: smooth_stacks"
     assert rows([outcome])[1]["got"] == "ZeroDivisionError: float division"
 
 
 def test_a_case_without_checks_fails():
     (outcome,) = run([Case("smooth_stacks", "none", lambda scene: ())])
     assert not outcome.holds
+    assert verdict([outcome]) == "1 case, 1 check: 1 check failed, in 1 case: smooth_stacks"
+
+
+@pytest.mark.parametrize("yes, no", [(True, False), (1, 0), (np.True_, np.False_)])
+def test_what_is_so_or_not_is_told_by_yes_and_no(yes, no):
+    for expected, found, holds in ((True, yes, True), (True, no, False), (False, no, True), (False, yes, False)):
+        made = check.whether("x", expected, found)
+        assert (made.expected, made.got) == ("yes" if expected else "no", "yes" if found else "no")
+        assert made.holds is holds
+    assert not check.whether("x", False, None).holds
+
+
+def test_of_what_is_cut_the_end_stays():
+    name = "belcour18_symmetric: light and view exchanged, relative"
+    made = check.relative(name, np.ones(960), 1.0, 0.1)
+    text = case_text(Outcome(CASES["smooth_stacks"], (made,), 1.0))
+    assert "belcour18_symmetric: light and vi... relative (worst of 960)" in text
+    usual = check.absolute("all light is accounted for: sum of the audit", np.ones(126), 1.0, 0.1)
+    assert f"{usual.checked}  " in case_text(Outcome(CASES["smooth_stacks"], (usual,), 1.0))
+
+
+def test_what_differs_between_threads_is_named():
+    (_, one), *_ = by_estimator(CASES["any_number_of_threads"].scene, rays=100, estimator="analog")
+    assert _first_difference(one, one) == ""
+    other = copy.deepcopy(one)
+    other.audit.energy["transmitted"][0, 0] += 0.5
+    other.audit.energy["reflected_internal"][0, 0] *= 1.5
+    assert _first_difference(one, other) == "audit reflected_internal differs, relatively by 0.33 at the most"
+    other.components["reflection/internal"].stderr[0, 0, 0, 0] = np.nan
+    assert _first_difference(one, other).startswith("reflection/internal stderr differs, relatively by nan")
+
+
+def test_the_page_explains_its_words():
+    text = markdown([])
+    assert all(f"*{word}*" in text for word in ("Exact adding", "Sums over its slopes", "audit"))
 
 
 @pytest.mark.parametrize("made", [check.relative, check.absolute])

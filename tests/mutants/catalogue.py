@@ -11,8 +11,10 @@ Tables ``[[mutant]]`` of the files ``*.toml`` beside this one, with
 ``tests``
     Tests that have to catch it, as pytest takes them: as narrow and as fast as possible.
 ``sizes``
-    Optional. How large the bug is: each takes the place of ``SIZE`` in ``new``. The first has to be caught; those
-    after it are smaller and smaller, and are tried until one is not seen.
+    Optional. How large the bug is: each takes the place of ``SIZE`` in ``new``. The first has to be caught, and stands
+    for ``SIZE`` in ``breaks``; those after it are smaller and smaller, and are tried until one is not seen.
+``unit``
+    What a size is, if it is no factor.
 """
 
 import tomllib
@@ -36,6 +38,12 @@ class Mutant:
     new: str
     tests: tuple
     sizes: tuple = ()
+    unit: str = "factor"
+
+    @property
+    def sentence(self):
+        """What is wrong, with the size that has to be caught."""
+        return self.breaks.replace(PLACEHOLDER, in_words(self.sizes[0])) if self.sizes else self.breaks
 
     def is_meant_by(self, pattern):
         """Whether its name, perhaps with its room, matches a pattern."""

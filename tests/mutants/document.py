@@ -18,10 +18,11 @@ or `ONLY='store/*'`). They stand in [tests/mutants](../tests/mutants), a file fo
 _SIZES = """
 ## The smallest bias that is seen
 
-Of some bugs it matters how large they are. Smaller and smaller ones were tried, until one was not seen.
+Of some bugs it matters how large they are. Smaller and smaller ones were tried, until one was not seen; the last
+cell is empty where all of them were seen. A factor of 1 would be no bug.
 
-| mutant | has to be seen | smallest seen | not seen |
-|---|---|---|---|
+| mutant | what a size is | has to be seen | smallest seen | not seen |
+|---|---|---|---|---|
 """
 
 
@@ -38,13 +39,14 @@ def write(outcomes):
         text.append(f"\n## {room}\n\n| mutant | what is wrong | file | caught by |\n|---|---|---|---|\n")
         for mutant, caught_by, _, _ in outcomes:
             if mutant.room == room:
-                cells = mutant.name, mutant.breaks, f"`{mutant.file}`", f"`{caught_by.removeprefix('tests/')}`"
+                cells = mutant.name, mutant.sentence, f"`{mutant.file}`", f"`{caught_by.removeprefix('tests/')}`"
                 text.append(f"| {' | '.join(map(_cell, cells))} |\n")
     text.append(_SIZES)
     for mutant, _, seen, missed in outcomes:
         if mutant.sizes:
-            sizes = mutant.name, *map(in_words, (mutant.sizes[0], seen[-1])), "" if missed is None else in_words(missed)
-            text.append(f"| {' | '.join(sizes)} |\n")
+            sizes = [in_words(size) for size in (mutant.sizes[0], seen[-1])]
+            cells = mutant.name, mutant.unit, *sizes, "" if missed is None else in_words(missed)
+            text.append(f"| {' | '.join(cells)} |\n")
     PATH.write_text("".join(text))
 
 

@@ -244,3 +244,9 @@ def test_limit_on_file_sizes(folder):
     assert "no room for about" in written and "nor could the result be saved" in written
     assert "cannot be written: File too large" in used and "nor could the result be saved" in used
     assert run.stdout.splitlines()[1::2] == ["[]"] * 3
+
+
+def test_a_result_that_is_read_only_is_not_replaced(folder):
+    write_result(make_result(), folder / "r.h5")
+    (folder / "r.h5").chmod(0o444)
+    assert "is read-only" in refusal(folder / "r.h5")

@@ -4,6 +4,7 @@ import ast
 import re
 from collections import Counter
 
+from mutants import document
 from mutants.catalogue import ROOT, catalogue, in_words
 
 MUTANTS = catalogue()
@@ -50,3 +51,20 @@ def test_sizes_begin_with_the_largest():
         biases = [abs(size - 1.0) for size in mutant.sizes if 0.1 < size < 10.0]
         assert biases == sorted(biases, reverse=True), mutant.name
     assert [in_words(size) for size in (0.5, 1.02, 1.0 + 1e-8, 50)] == ["0.5", "1.02", "1 + 1e-08", "50"]
+
+
+def test_the_page_tells_how_large_the_bugs_are(tmp_path, monkeypatch):
+    monkeypatch.setattr(document, "PATH", tmp_path / "mutants.md")
+    graded = {mutant.name: mutant for mutant in MUTANTS if mutant.sizes}
+    outcomes = [(each, "tests/x.py::test_x", each.sizes[:1], each.sizes[1]) for each in graded.values()]
+    outcomes[0] = (*outcomes[0][:2], outcomes[0][0].sizes, None)
+    document.write(outcomes)
+    page = (tmp_path / "mutants.md").read_text()
+    assert "SIZE" not in page and "empty where all of them were seen" in page
+    assert "| The edges of rows are 0.0001 of a cell too low. |" in page
+    assert "| row-edges-shifted | share of a cell | 0.0001 | 0.0001 | 1e-05 |" in page
+    assert f"| {outcomes[0][0].name} | factor | 1.5 | 1.02 |  |" in page
+
+
+def test_the_page_in_the_repository_has_no_gaps():
+    assert "SIZE" not in document.PATH.read_text()

@@ -31,7 +31,14 @@ def test_audit_shows_every_entry_that_has_energy_and_only_those(result):
 
 def test_an_audit_that_does_not_close_is_seen(result):
     result.audit.energy["absorbed_base"][0, 0] += 0.25
-    assert "within 3e+01 %" in _line(audit.audit_lines(result), "Each line sums")
+    assert "within 25 %" in _line(audit.audit_lines(result), "Each line sums")
+
+
+@pytest.mark.parametrize(("lost", "shown"), [(1.0, "100 %"), (0.999, "99.9 %"), (0.25, "25 %")])
+def test_what_masking_loses_is_a_percentage_without_an_exponent(result, lost, shown):
+    result.audit.energy["lost_masked_reflection"][:] = lost
+    result.audit.energy["lost_masked_transmission"][:] = 0.0
+    assert f"masking loses up to {shown} here" in " ".join(losses.left_out_lines(result))
 
 
 @pytest.mark.parametrize(("lost", "said"), [(0.009, False), (0.011, True), (0.2, True)])

@@ -9,6 +9,7 @@ import pytest
 from goniosim.engine import memory_needed
 from goniosim.report.simulation import audit, cost, forecast, losses, study, summary
 from goniosim.scene import Simulation
+from goniosim.scene.quantity import percent
 from reference.scenes import lambert, make_scene
 from synthetic import make_result
 
@@ -130,7 +131,7 @@ def test_what_is_uncertain_and_what_nodes_may_hide_are_said_in_a_line(result):
     (uncertain,) = [line for line in lines if line.startswith("  transmission: ") and "uncertain" in line]
     component = few.components["transmission"]
     share = component.energy[component.uncertain].sum() / component.energy.sum()
-    assert f"{100.0 * share:.2g} % of its energy" in uncertain
+    assert f"{percent(share)} of its energy" in uncertain
     assert "  transmission: nodes may add an error of up to 1e-06 sr^-1/2, whatever the noise" in lines
     assert lines[3].endswith("estimator mixed")
     data = json.loads(json.dumps(summary.as_data(few), allow_nan=False))

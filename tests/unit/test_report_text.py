@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from goniosim.report import text
+from goniosim.scene.quantity import percent
 
 
 @pytest.mark.parametrize(
@@ -81,3 +82,26 @@ def test_channels_that_agree_everywhere_are_one_group():
     assert text.channel_groups(["R", "G", "B"], [agree]) == [("R", 0), ("GB", 1)]
     assert text.channel_groups(["R", "G", "B"], [agree, differ]) == [("R", 0), ("G", 1), ("B", 2)]
     assert text.channel_groups(["450 nm", "550 nm"], [np.ones((2, 2))]) == [("450 nm+550 nm", 0)]
+
+
+@pytest.mark.parametrize(
+    "share, digits, shown",
+    [
+        (0.0, 2, "0 %"),
+        (3.14159e-6, 2, "0.00031 %"),
+        (0.5, 2, "50 %"),
+        (0.9949, 2, "99 %"),
+        (0.9951, 2, "99.5 %"),
+        (0.999, 2, "99.9 %"),
+        (1.0, 2, "100 %"),
+        (2.5, 2, "250 %"),
+        (12.5, 3, "1250 %"),
+        (0.25, 1, "25 %"),
+        (4.44e-16, 1, "4e-14 %"),
+        (1e6, 2, "1e+08 %"),
+        (float("inf"), 2, "inf %"),
+        (float("nan"), 2, "nan %"),
+    ],
+)
+def test_percentages_have_no_exponent_where_people_read_them(share, digits, shown):
+    assert percent(share, digits) == shown

@@ -263,7 +263,7 @@ def problems_of(text, source="f.yaml"):
             "eta: 1.5,",
             "ior: 15,",
             [
-                f"{COAT}.ior: {ETA} (did you mean eta: 15?)",
+                f"{COAT}.ior: {ETA} (did you mean eta?)",
                 f"{COAT}.ior: must lie between 0.1 and 10: it is the absolute index below the interface [got 15]",
             ],
         ),

@@ -100,7 +100,30 @@ COAT = "f.yaml:4: material.layers[0].interface"
         (
             "[0, 15, 30]",
             "45",
-            "f.yaml:12: incident.theta_deg: must be a list of angles in degrees, such as [0, 30, 60] [got 45]",
+            "f.yaml:12: incident.theta_deg: must be a list of angles in degrees: write [45] [got 45]",
+        ),
+        (
+            "[0, 15, 30]",
+            "95",
+            "f.yaml:12: incident.theta_deg: must be a list of angles in degrees, such as [0, 30, 60] [got 95]",
+        ),
+        (
+            "rays: 1e7",
+            "target: 2 %",
+            "f.yaml:14: simulation.target: must be a mapping with relative_error and of: "
+            "write target: {relative_error: 2 %} [got '2 %']",
+        ),
+        (
+            "rays: 1e7",
+            "target: 0.02",
+            "f.yaml:14: simulation.target: must be a mapping with relative_error and of: "
+            "write target: {relative_error: 0.02} [got 0.02]",
+        ),
+        (
+            "rays: 1e7",
+            "target: good",
+            "f.yaml:14: simulation.target: must be a mapping with relative_error and of: "
+            "write target: {relative_error: 1%} [got 'good']",
         ),
         ("rays: 1e7", "rays: 99", f"f.yaml:14: simulation.rays: {RAYS} [got 99]"),
         ("rays: 1e7", "rays: 1000.5", f"f.yaml:14: simulation.rays: {RAYS} [got 1000.5]"),

@@ -75,7 +75,10 @@ def test_what_is_no_time(written, shown):
         ("{target: {relative_error: 1%}, rays: 1e5}", [f"rays: {BOTH} [got 100000.0]"]),
         ("{max_rays: 1e5}", [f"max_rays: {IDLE} [got 100000.0]"]),
         ("{rays: 100, max_time: 10m}", [f"max_time: {IDLE} [got '10m']"]),
-        ("{target: 1%}", ["target: must be a mapping with relative_error and of [got '1%']"]),
+        (
+            "{target: 1%}",
+            ["target: must be a mapping with relative_error and of: write target: {relative_error: 1%} [got '1%']"],
+        ),
         ("{target: {of: albedo}}", ["target.relative_error: is missing: this key is required"]),
         (
             "{target: {relative_error: 1%, of: slices}}",

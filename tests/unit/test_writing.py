@@ -67,3 +67,37 @@ def test_a_link_stays_a_link_and_long_names_fit(tmp_path):
 def test_a_terminal_shows_and_does_not_obey():
     assert printable("\x1b[2J\x9b1m\x7f\n\t\u202e\udce9 µ 漆") == "\\x1b[2J\\x9b1m\\x7f\\n\\t\\u202e\\udce9 µ 漆"
     assert printable("a" * 300, most=200) == "a" * 200 + "..." and printable("abc", most=3) == "abc"
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
+def test_what_is_no_file_is_refused_before_the_work_and_after_it(tmp_path, make):
+    """As root a device of the system would be gone for good."""
+    make(tmp_path / "there")
+    with (
+        pytest.raises(OutputError, match="exists and is not a regular file|Is a directory"),
+        replacing(tmp_path / "there"),
+    ):
+        pytest.fail("nothing is written that cannot be put into place")
+    with (
+        pytest.raises(OutputError, match="exists and is not a regular file|Is a directory"),
+        replacing(tmp_path / "later"),
+    ):
+        make(tmp_path / "later")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["later", "there"]
+    assert not any(path.is_file() for path in tmp_path.iterdir())
+
+
+def test_a_link_to_what_is_no_file_is_refused(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to(tmp_path / "pipe")
+    with pytest.raises(OutputError, match="link: exists and is not a regular file"):
+        write_text(tmp_path / "link", "text")
+    assert (tmp_path / "pipe").is_fifo()
+
+
+def test_a_read_only_file_is_refused_by_whoever_it_is(tmp_path):
+    write_text(tmp_path / "file.txt", "first\n")
+    (tmp_path / "file.txt").chmod(0o444)
+    with pytest.raises(OutputError, match="exists and is read-only"):
+        write_text(tmp_path / "file.txt", "second\n")
+    assert (tmp_path / "file.txt").read_text() == "first\n"

@@ -36,7 +36,7 @@ def matched_index(scene: Scene) -> Iterator[Check]:
 
 
 def nearly_matched_index(scene: Scene) -> Iterator[Check]:
-    """An index 1e-9 above or below 1 reflects what Fresnel's equations say, and a rough one masks and bends nothing."""
+    """An index 1e-9 above or below 1 reflects as Fresnel says; a rough one masks like any, but bends nothing."""
     thetas = scene.incident.theta_deg
     cosines = np.array([rough.cosine_of(theta) for theta in thetas])
     for eta in (1.0 + 1e-9, 1.0 - 1e-9):

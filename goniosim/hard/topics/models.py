@@ -8,7 +8,7 @@ from ...compare import compare
 from ...engine import simulate
 from ...models import COMPONENTS, MODELS, evaluate_model, prepare
 from ...scene import Scene
-from ..check import Check, absolute, relative, statement
+from ..check import Check, absolute, relative, statement, whether
 from ..oracles import adding
 from ..variants import varied
 
@@ -133,7 +133,7 @@ def comparison_of_a_needle(scene: Scene) -> Iterator[Check]:
     for theta in scene.incident.theta_deg:
         (row,) = compared.rows("reflection", theta_deg=theta)
         where = f"{theta:g} degrees"
-        yield statement(f"{where}: sub-cells are called converged", row["converged"] == 0, 0, row["converged"])
+        yield whether(f"{where}: sub-cells are called converged", False, row["converged"])
         share = row["rmse_converged"] / row["reference_norm"]
         yield absolute(f"{where}: error by adaptive integration, share of the slice", share, 0.0, 1e-4)
 

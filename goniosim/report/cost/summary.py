@@ -2,6 +2,7 @@
 
 from dataclasses import asdict
 
+from ...scene import quantity
 from .. import text
 from .runs import ESTIMATORS
 
@@ -106,7 +107,7 @@ def how(price):
 
 def percent(error):
     """Format a relative error: ``0.3 %``."""
-    return f"{100.0 * error:.3g} %"
+    return quantity.percent(error, 3)
 
 
 def _effect_lines(made):
@@ -155,5 +156,5 @@ def uncertain(error, uncertainty):
     """A relative error with its standard error, or its upper limit where it is not told from noise."""
     upper = error + 2.0 * uncertainty
     if error <= 2.0 * uncertainty:
-        return "not told from noise" if upper > 1.0 else f"< {100.0 * upper:.2g} %"
+        return "not told from noise" if upper > 1.0 else f"< {quantity.percent(upper)}"
     return f"{text.with_error(100.0 * error, 100.0 * uncertainty)} %"

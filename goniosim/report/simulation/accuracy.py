@@ -8,6 +8,7 @@ from ...engine.estimate import COMPONENT_OF
 from ...engine.plan import make_plan
 from ...engine.reach import most_light
 from ...scene import parse_scene
+from ...scene.quantity import percent
 from ...sums import noise_of
 from .. import text
 from .audit import unseen
@@ -41,12 +42,12 @@ def accuracy_lines(result):
             lines.append(f"  {name.ljust(width)}   {known}" + ("" if target is None else f" (target {target})"))
             continue
         angle = text.angles(result.theta_deg)[worst]
-        held = "" if target is None else f", nine in ten errors below {100.0 * bounds[worst]:.2g} % (target {target})"
+        held = "" if target is None else f", nine in ten errors below {percent(bounds[worst])} (target {target})"
         course = trend(result, name)
         more = ", ".join(
             f"{factor} times better {course.about} {text.duration(course.seconds_for(factor))}" for factor in FACTORS
         )
-        lines.append(f"  {name.ljust(width)}   {100.0 * found[worst]:.2g} % at {angle} deg{held}; {more}")
+        lines.append(f"  {name.ljust(width)}   {percent(found[worst])} at {angle} deg{held}; {more}")
     return lines if names else []
 
 

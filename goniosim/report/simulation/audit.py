@@ -4,6 +4,7 @@ import numpy as np
 
 from ...accuracy import FAINTEST
 from ...albedo import arrived
+from ...scene.quantity import percent
 from .. import text
 from .losses import masking_lines
 
@@ -95,7 +96,7 @@ def audit_lines(result):
     )
     residual = np.max(np.abs(audit.residual[result.rays > 0]), initial=0.0)
     lines = ["Energy audit (% of the incident energy, as sampled)", *text.table(header, rows)]
-    lines.append(f"  Each line sums to 100 % within {100.0 * residual:.0e} %.")
+    lines.append(f"  Each line sums to 100 % within {percent(residual, 1)}.")
     if omitted:
         names = ", ".join(name.replace("\n", " ") for name in omitted)
         lines.append(f"  Not shown, since below {100.0 * NEGLIGIBLE:g} %: {names}.")

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...scene.quantity import percent
 from .. import text
 from ..drawing import bands, inplane, legend, letters, panels, tone, view, zoom
 from ..drawing.disks import Board
@@ -158,9 +159,9 @@ def _caption(result, i, name):
         parts = ["albedo  " + "  ".join(f"{label} {value[i, c]:.3g}" for label, c in groups)]
     energy = component.energy[i].sum()
     if component.sampled and energy > 0.0:
-        noise = 100.0 * component.stderr[i].sum() / energy
+        noise = component.stderr[i].sum() / energy
         rays = f"{text.count(result.rays[i])} rays" + (" (partial)" if result.status == "partial" else "")
-        parts.append(f"noise of a cell about {noise:.2g} % after {rays}")
+        parts.append(f"noise of a cell about {percent(noise)} after {rays}")
     if component.contains_delta:
         parts.append("a part leaves in one direction")
     return "   |   ".join(parts)

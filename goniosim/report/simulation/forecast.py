@@ -2,6 +2,7 @@
 
 from dataclasses import asdict, dataclass
 
+from ...scene.quantity import percent
 from ...sums import BATCHES, BLOCKS
 from .. import text
 from . import target
@@ -253,7 +254,7 @@ def _event_cap(one):
     # Each work unit of the probe has less rays than one of a long run, which loses a smaller share.
     return (
         f"  Warning: event cap: {one.name} traps light between interfaces; of the {text.count(one.probe_rays)} rays of "
-        f"the probe up to {100.0 * one.lost_event_cap:.2g} % were cut and lost; {cap_remedy(one.simulation.rays or 0)}"
+        f"the probe up to {percent(one.lost_event_cap)} were cut and lost; {cap_remedy(one.simulation.rays or 0)}"
     )
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...scene.quantity import percent
 from .. import text
 
 # Share of the energy from which the loss to single scattering is said in words.
@@ -51,10 +52,10 @@ def event_cap(result):
         return None
     i, c = np.unravel_index(np.argmax(lost), lost.shape)
     found = energy["reflected_internal"][i, c] + energy["transmitted"][i, c]
-    darker = 100.0 * lost[i, c] / (found + lost[i, c])
+    darker = lost[i, c] / (found + lost[i, c])
     return (
-        f"Warning: event cap: {100.0 * lost[i, c]:.2g} % of the light ({_place(result, i, c)}) was trapped between "
-        f"interfaces and is lost; what left the stack is up to {darker:.2g} % too dark; {cap_remedy(result.rays[i])}"
+        f"Warning: event cap: {percent(lost[i, c])} of the light ({_place(result, i, c)}) was trapped between "
+        f"interfaces and is lost; what left the stack is up to {percent(darker)} too dark; {cap_remedy(result.rays[i])}"
     )
 
 
@@ -71,7 +72,7 @@ def left_out_lines(result):
     masking = "masking loses nothing here"
     if lost.size and lost.max() > 0.0:
         i, c = np.unravel_index(np.argmax(lost), lost.shape)
-        masking = f"masking loses up to {100.0 * lost[i, c]:.2g} % here ({_place(result, i, c)})"
+        masking = f"masking loses up to {percent(lost[i, c])} here ({_place(result, i, c)})"
     return [
         "Left out: polarisation, dropped at every event (five clear plates, 56 degrees: 40 % too much is reflected);",
         "  waves (thin films, diffraction); light that facets of one interface send to each other:",

@@ -6,6 +6,7 @@ import os
 import numpy as np
 
 from ...scene import parse_scene
+from ...scene.quantity import percent
 from .. import text
 from . import accuracy, audit, cost, losses, target
 
@@ -89,9 +90,7 @@ def _doubts(result, name):
     held = _uncertain_energy(component)
     lines = []
     if held is not None and held > NEGLIGIBLE:
-        lines.append(
-            f"  {name}: {100.0 * held:.2g} % of its energy lies in uncertain cells, which too few paths reached"
-        )
+        lines.append(f"  {name}: {percent(held)} of its energy lies in uncertain cells, which too few paths reached")
     if component.node_bias is not None and component.node_bias.any():
         lines.append(
             f"  {name}: nodes may add an error of up to {component.node_bias.max():.1g} sr^-1/2, whatever the noise"

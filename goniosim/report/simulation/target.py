@@ -5,6 +5,7 @@ import numpy as np
 from ...accuracy import norm, paths_for
 from ...engine.estimate import COMPONENT_OF
 from ...scene.model import LIMITS
+from ...scene.quantity import percent
 from .. import text
 from . import accuracy
 from .trend import trend
@@ -66,7 +67,7 @@ def far(simulation, outlook):
     if np.isinf(outlook.error):
         at = f"of {names} too little was seen for an error after {text.count(outlook.paths)} rays per direction"
         return f"{at}; the target of {simulation.target} takes over {more}{beyond}"
-    at = f"{names} is at {100.0 * outlook.error:.2g} % after {text.count(outlook.paths)} rays per direction"
+    at = f"{names} is at {percent(outlook.error)} after {text.count(outlook.paths)} rays per direction"
     return f"{at}; the target of {simulation.target} takes about {more}{beyond}"
 
 
@@ -124,7 +125,7 @@ def _price(target, result):
     paths, seconds, held = max(found, default=(0.0, 0.0, 0.0))
     if not held > target.relative_error or not 0.0 < paths < np.inf:
         return ""
-    return f" (it is at {100.0 * held:.2g} %, and takes about {_paths_and_time(paths, seconds)} in all)"
+    return f" (it is at {percent(held)}, and takes about {_paths_and_time(paths, seconds)} in all)"
 
 
 def _off(result, name, m):

@@ -8,7 +8,7 @@ from goniosim.scene.foreign.words import ESTIMATORS, INDICES, OF, PARAMETRIZATIO
 from goniosim.scene.layers import INTERFACES, Layer, Medium, Part
 from goniosim.scene.model import Incident, Material, Scene, Simulation, Slice
 from goniosim.scene.problems import Problem, closest, listed
-from goniosim.scene.quantity import looks_numeric
+from goniosim.scene.quantity import Checked, looks_numeric
 from goniosim.scene.target import Target
 from goniosim.scene.tree import Node, from_plain, plain, show
 
@@ -30,7 +30,13 @@ _CHOICES = {
     key: {normal(word): choice for choice, words in table.items() for word in words.split()}
     for key, table in (("parametrization", PARAMETRIZATIONS), ("estimator", ESTIMATORS), ("of", OF))
 }
-_PARTS: dict[str, type[Part]] = {"material": Material, "incident": Incident, "slice": Slice, "simulation": Simulation}
+_SECTIONS: dict[str, type[Part]] = {
+    "material": Material,
+    "incident": Incident,
+    "slice": Slice,
+    "simulation": Simulation,
+}
+_PARTS: dict[str, type[Part]] = {**_SECTIONS, "target": Target, "medium": Medium, **INTERFACES}
 
 
 def translate(root: Node) -> tuple[Node, list[Problem]]:
@@ -116,7 +122,7 @@ class _Translator:
 
     def scene(self, root: Node) -> Node:
         root = self._keys(root, list(Scene.model_fields), "scene")
-        for key, part in _PARTS.items():
+        for key, part in _SECTIONS.items():
             child = root.child(key)
             if child is not None:
                 root = root.with_child(key, self._keys(child, list(part.model_fields), key))
@@ -171,21 +177,23 @@ class _Translator:
                 kept[key] = child
                 continue
             siblings = {normal(key): plain(child) for key, child in node.value.items()}
-            meant = self._meant(child, found, siblings)
+            meant = self._meant(child, found, siblings, places)
             if found.key is not None and found.key not in (*node.value, *kept):
                 kept[found.key] = meant
         return replace(node, value=kept)
 
-    def _meant(self, child: Node, found: Meaning, siblings: dict[str, object]) -> Node:
+    def _meant(self, child: Node, found: Meaning, siblings: dict[str, object], places: tuple[str, ...]) -> Node:
         """Note the problem of a foreign key, and give the value it should have under our key."""
         value = found.value(plain(child), siblings) if found.key else None
-        suggestion = found.key
-        if _is_numeric(value):
-            suggestion = f"{found.key}: {_shown(value)}"
+        suggestion, origin = found.key, child.origin
+        if found.key and _is_numeric(value):
+            origin = replace(origin, worked_out=found.key)
+            if _is_sound(value, found.key, places):
+                suggestion = f"{found.key}: {_shown(value)}"
         self.problems.append(child.problem(found.message, got=False, suggestion=suggestion))
         if found.value is values.unchanged:
             return child
-        return from_plain(_SOUND[found.key or ""] if value is None else value, child.origin)
+        return from_plain(_SOUND[found.key or ""] if value is None else value, origin)
 
     def _rejoined(self, node: Node) -> Node:
         """Mend ``{eta: 1,5, ...}``, which YAML reads as ``eta: 1`` and a key ``5`` without a value."""
@@ -203,6 +211,13 @@ class _Translator:
                 kept[key] = child
                 before = key
         return replace(node, value=kept)
+
+
+def _is_sound(value: object, key: str, places: tuple[str, ...]) -> bool:
+    """Whether a value may stand under a key at one of some places, as far as it alone decides that."""
+    fields = [_PARTS[place].model_fields for place in places if place in _PARTS]
+    checks = [each for field in fields if key in field for each in field[key].metadata if isinstance(each, Checked)]
+    return not checks or any(check.accepts(value) for check in checks)
 
 
 def _is_numeric(value: object) -> bool:
