@@ -183,7 +183,7 @@ def bin_arrivals(stack, light, target, size, keys, crowd, budget, space, bins):
 def _entering(kind, light, eta):
     """Some times the share of the light that enters, and 1 at the most.
 
-    Beside that a ray is faint: next to the horizon all of them would be, and the light of the few that live on be missed.
+    Beside that a ray is faint: next to the horizon all would be, and the light of the few that live on missed.
     """
     if kind != SMOOTH_DIELECTRIC:
         return 1.0
