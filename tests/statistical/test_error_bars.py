@@ -92,8 +92,8 @@ def test_error_bars_of_the_audit(seed):
 def test_light_that_is_caught(estimator, seed):
     """24 runs that all state about the same error, about as large as their scatter; in the mean they are right.
 
-    Squared deviations over the stated ones are 3 in the mean with a chance of 2.3e-5 (t with 31 degrees of freedom), for
-    either way out; one of the stated errors is twice the median with one below 1e-6; independent paths, whose error
+    Squared deviations over the stated ones are 3 in the mean with a chance of 2.3e-5 (t with 31 degrees of freedom),
+    for either way out; one of the stated errors is twice the median with one below 1e-6; independent paths, whose error
     dominates, within 4.5 sigma: 1e-5. Weights without a bound had stated errors of 2.4 to 22 times the median.
     """
     layers = [dielectric(4.0, 0.03), dielectric(1.0, 0.03)]

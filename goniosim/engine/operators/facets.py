@@ -2,8 +2,8 @@
 
 Rare facets carry the dim tails of wide exits. A tenth of all facets is drawn from wider distributions; the ratio of the
 densities is kept apart from the weight, for a roulette that looked at the product would end the very rays drawn for the
-tails. Facets of the core have ratios of up to 10 / 9, and light that is caught meets hundreds: the few paths that met no
-others would carry all of it. So a path whose ratios have come to a product of `MOST` draws from the plain width alone.
+tails. Facets of the core have ratios of up to 10 / 9, and light that is caught meets hundreds: the few paths that met
+no others would carry all of it. So a path whose ratios have come to a product of `MOST` draws from the plain one alone.
 """
 
 import math

@@ -18,8 +18,8 @@ _STEP_V = 0.5698402909980532
 _TAIL = 0.01
 _DRAWN = 0.03
 _LEAST = 1e-4
-# Product of the ratios of a ray, from which on its facets are not drawn so: light that is caught meets hundreds, and the
-# few rays that met none of the tail would carry all of it.
+# Product of the ratios of a ray, from which on its facets are not drawn so: light that is caught meets hundreds, and
+# the few rays that met none of the tail would carry all of it.
 MOST = 2.0
 
 
