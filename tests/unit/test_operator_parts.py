@@ -12,12 +12,12 @@ from goniosim.engine.operators import cells, kernels, nodes, rays, stencils
 from goniosim.engine.operators.arrivals import bin_arrivals
 from goniosim.engine.operators.azimuths import at_azimuths, cosines, end_weights, to_coefficients, to_values
 from goniosim.engine.operators.bins import deposit, move_bins
-from goniosim.engine.operators.facets import choose_width, meet_facet
+from goniosim.engine.operators.facets import MOST, SHARE, choose_width, draw, meet_facet, meet_facets
 from goniosim.engine.plan import make_plan
 from goniosim.engine.sorting import LANES
 from goniosim.engine.unit import BATCH, child_key
 from goniosim.optics.microfacet import microfacet_transmission
-from goniosim.optics.random import random_sincos, uniform
+from goniosim.optics.random import derive_key, random_sincos, uniform
 from reference.cell_integrals import integrate_cells
 from reference.closed_forms import reflection_density, transmission_density
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
@@ -207,6 +207,32 @@ def test_facets_of_the_mixture_have_the_plain_distribution(alpha, deg, seed):
     assert abs(ratio.mean() - 1.0) < 4.5 * ratio.std() / math.sqrt(len(ratio)) + 1e-12
     tilt, other = np.arccos(np.minimum(plain, 1.0)), np.arccos(np.minimum(mixed, 1.0)) * ratio
     assert abs(tilt.mean() - other.mean()) < 4.5 * math.sqrt((tilt.var() + other.var()) / len(ratio))
+
+
+@kernel
+def _meet_many(batch, n, alpha, events, scratch):
+    keys = batch[rays.KEY].view(np.uint64)
+    for i in range(n):
+        keys[i] = derive_key(keys[i], 0)
+    for _ in range(events):
+        draw(batch, n, alpha, scratch)
+        meet_facets(batch, n, alpha, scratch)
+        for i in range(n):
+            keys[i] = derive_key(keys[i], 1)
+
+
+@pytest.mark.false_alarm(7e-6, seeds=(0, 100))
+@pytest.mark.parametrize("alpha", [0.001, 0.05, 0.5])
+def test_weights_of_long_paths_are_bounded(alpha, seed):
+    """After 300 facets, as where light is caught, the ratios still have mean 1: within 4.5 sigma, false alarm 7e-6."""
+    n = 4000
+    batch, scratch = np.zeros((rays.WEIGHT + 1, n)), np.empty((rays.N_SCRATCH, n))
+    batch[rays.X], batch[rays.Z], batch[rays.RATIO] = 0.6, 0.8, 1.0
+    batch[rays.KEY].view(np.uint64)[:] = [child_key(seed, i) for i in range(n)]
+    _meet_many(batch, n, alpha, 300, scratch)
+    ratio = batch[rays.RATIO]
+    assert ratio.max() < MOST / (1.0 - 2.0 * SHARE)
+    assert abs(ratio.mean() - 1.0) < 4.5 * ratio.std() / math.sqrt(n)
 
 
 FOUR = [dielectric(1.5, 0.3), dielectric(2.0, 0.2), dielectric(1.3, 0.2), conductor(0.2, 3.0, 0.2)]

@@ -2,7 +2,8 @@
 
 Rare facets carry the dim tails of wide exits. A tenth of all facets is drawn from wider distributions; the ratio of the
 densities is kept apart from the weight, for a roulette that looked at the product would end the very rays drawn for the
-tails.
+tails. Facets of the core have ratios of up to 10 / 9, and light that is caught meets hundreds: the few paths that met
+no others would carry all of it. So a path whose ratios have come to a product of `MOST` draws from the plain one alone.
 """
 
 import math
@@ -19,6 +20,8 @@ from .rays import COSINE, FACET_X, FACET_Y, FACET_Z, KEY, RATIO, WIDTH, X, Y, Z
 # Share of each of the two wider distributions, whose widths are sqrt(alpha) and WIDEST.
 SHARE = 0.05
 WIDEST = 0.5
+# Product of the ratios of a path, from which on it draws no wider facets: then its weight stays as it is.
+MOST = 2.0
 # Random numbers of a ray: azimuth and height of a facet, and the width.
 AZIMUTH, HEIGHT, MIXTURE = range(3)
 
@@ -62,16 +65,18 @@ def draw(batch, n, alpha, scratch):
     """Independent numbers for the facets of ``n`` rays."""
     keys = batch[KEY].view(np.uint64)
     cosines, sines, heights, widths = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], scratch[WIDTH]
+    ratios = batch[RATIO]
     for i in range(n):
         sines[i], cosines[i] = random_sincos(keys[i], AZIMUTH)
         heights[i] = uniform(keys[i], HEIGHT)
     for i in range(n):
-        widths[i] = choose_width(alpha, uniform(keys[i], MIXTURE))
+        width = choose_width(alpha, uniform(keys[i], MIXTURE))
+        widths[i] = width if ratios[i] < MOST else alpha
 
 
 @stage
 def draw_lattice(numbers, n, alpha, shifts_key, dimension, scratch):
-    """As `draw`, from three dimensions of the lattice of all paths."""
+    """As `draw`, from three dimensions of the lattice of all paths, whose first events leave ratios below `MOST`."""
     cosines, sines, heights, widths = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], scratch[WIDTH]
     azimuth = uniform(shifts_key, dimension)
     height = uniform(shifts_key, dimension + 1)
@@ -111,4 +116,4 @@ def _meet(x, y, z, n, alpha, width, fx, fy, fz, cosines, ratios):
         fy[i] = my
         fz[i] = mz
         cosines[i] = min(1.0, max(0.0, vx * mx + vy * my + vz * mz))
-        ratios[i] *= ratio
+        ratios[i] *= ratio if ratios[i] < MOST else 1.0

@@ -39,7 +39,7 @@ def meet_base(kind, batch, n, alpha, spectral, scratch):
     elif kind == ROUGH_CONDUCTOR:
         fx, fy, fz, cosines = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z], scratch[COSINE]
         ratios = scratch[FACET_RATIO]
-        facet_numbers(scratch[POINT_U], scratch[POINT_V], n, 0, BASE, fx, fy, fz, ratios)
+        facet_numbers(scratch[POINT_U], scratch[POINT_V], n, 0, BASE, batch[RATIO], fx, fy, fz, ratios)
         multiply(batch[RATIO], n, ratios)
         draw_facets(x, y, z, n, alpha, fx, fy, fz, cosines)
         _reflect(x, y, z, n, alpha, fx, fy, fz, cosines, ox, oy, oz, gain)

@@ -18,6 +18,9 @@ _STEP_V = 0.5698402909980532
 _TAIL = 0.01
 _DRAWN = 0.03
 _LEAST = 1e-4
+# Product of the ratios of a ray, from which on its facets are not drawn so: light that is caught meets hundreds, and
+# the few rays that met none of the tail would carry all of it.
+MOST = 2.0
 
 
 @stage
@@ -49,12 +52,18 @@ def steps_of(dimension):
 
 
 @stage
-def facet_numbers(u, v, n, number, dimension, cosines, sines, heights, ratios):
-    """What the ``number``-th facet of each ray takes: cosine and sine of a uniform azimuth, and `far_facet`."""
+def facet_numbers(u, v, n, number, dimension, before, cosines, sines, heights, ratios):
+    """What the ``number``-th facet of each ray takes: cosine and sine of a uniform azimuth, and `far_facet`.
+
+    ``before`` are the products of the ratios of the facets that the rays have met.
+    """
     step_u, step_v = steps_of(dimension)
     for i in range(n):
         sines[i], cosines[i] = sincos_turns(coordinate(u[i], number, step_u))
-        heights[i], ratios[i] = far_facet(coordinate(v[i], number, step_v))
+        height = coordinate(v[i], number, step_v)
+        far, ratio = far_facet(height)
+        heights[i] = far if before[i] < MOST else height
+        ratios[i] = ratio if before[i] < MOST else 1.0
 
 
 @scalar

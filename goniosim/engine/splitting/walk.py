@@ -151,7 +151,7 @@ def split_walk(stack, scales, facets, crowd, light, paths_key, shifts, budget, r
             if rough:
                 u, v = scratch[POINT_U], scratch[POINT_V]
                 fx, fy, fz = scratch[FACET_X], scratch[FACET_Y], scratch[FACET_Z]
-                facet_numbers(u, v, n, m - 1, dimension, fx, fy, fz, scratch[FACET_RATIO])
+                facet_numbers(u, v, n, m - 1, dimension, batch[RATIO], fx, fy, fz, scratch[FACET_RATIO])
             meet_dielectric(kinds[k], batch, n, alphas[k], eta, scratch)
             turn_back(kinds[k], batch, n, alphas[k], scratch)
             if seen or way < 0:
