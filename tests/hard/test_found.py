@@ -11,7 +11,7 @@ from goniosim.engine.splitting.effort import ROUNDS
 from goniosim.errors import ConfigError
 from goniosim.slices import slice_geometry
 from reference.closed_forms import fresnel_dielectric
-from reference.replicates import keys, make_replicates, prepared
+from reference.replicates import keys, make_replicates, prepared, totals
 from reference.scenes import conductor, dielectric, lambert, make_scene
 
 
@@ -60,7 +60,7 @@ def test_light_whose_end_is_out_of_sight_is_not_called_dark():
     """
     scene = make_scene(alternating(3, 0.1, 10.0), 0.0, rows=6, columns=12)
     plan, split = prepared(Split, scene)
-    found = make_replicates(plan, split, 1024, seed=1).sum(axis=(1, 2, 3, 4)) * 2.0
+    found = totals(plan, make_replicates(plan, split, 1024, seed=1))[:, 0]
     audit = simulate(scene, rays=20_000, estimator="analog", seed=1).audit
     leaves = 1.0 - fresnel_dielectric(1.0, 10.0)
     lost, of_lost = (getattr(audit, name)["lost_event_cap"][0, 0] for name in ("energy", "stderr"))

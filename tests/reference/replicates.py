@@ -37,8 +37,15 @@ def make_replicates(plan, made, size, seed, count=32, direction=0):
     return out
 
 
+def totals(plan, replicates):
+    """Energies of whole slices, shape (count, slots)."""
+    return replicates.sum(axis=(2, 3, 4)) * (plan.columns / plan.width)
+
+
 def folded(plan, slices):
-    """Analog slices (..., columns) on the columns that tell all: the mean of both that are one."""
+    """Analog slices (..., columns) on the columns that tell all: where they are folded, the mean of both that are one."""
+    if plan.width == plan.columns:
+        return slices
     return (0.5 * (slices + slices[..., ::-1]))[..., : plan.width]
 
 
@@ -56,6 +63,6 @@ def analog_blocks(scene, plan, side, rows, columns, runs=1, seed=1000):
         found = simulate(scene, seed=seed + run, estimator="analog").components[name]
         mean = mean + blocks(folded(plan, found.energy[0][plan.distinct]), rows, columns) / runs
         # Both of a pair are hit by different paths.
-        squares = folded(plan, found.stderr[0][plan.distinct] ** 2) * 0.5
+        squares = folded(plan, found.stderr[0][plan.distinct] ** 2) * (plan.width / plan.columns)
         variance = variance + blocks(squares, rows, columns) / runs**2
     return mean, variance

@@ -13,7 +13,7 @@ from goniosim.engine.splitting.layout import EVENTS, STAGES
 from goniosim.engine.splitting.walk import EVENTS_PER_STAGE
 from goniosim.engine.unit import BATCH
 from reference.closed_forms import fresnel_dielectric, smooth_metal, smooth_slab
-from reference.replicates import keys, make_replicates, prepared
+from reference.replicates import keys, make_replicates, prepared, totals
 from reference.scenes import conductor, dielectric, lambert, make_scene, medium
 
 # Hardly a photon in 10^5 is lost at the base.
@@ -29,11 +29,11 @@ def small(layers, theta):
     return make_scene(layers, theta, rows=6, columns=12)
 
 
-def totals(layers, theta, size, seed, count=32):
+def energies(layers, theta, size, seed, count=32):
     """Energies of each replicate by way out, shape (count, ways out)."""
     plan, split = prepared(Split, small(layers, theta))
     found = make_replicates(plan, split, size, seed, count)
-    return plan.light[0][2], found.sum(axis=(2, 3, 4)) * 2.0
+    return plan.light[0][2], totals(plan, found)
 
 
 def exact(layers, cosine):
@@ -58,7 +58,7 @@ def exact(layers, cosine):
 )
 def test_fewer_paths_are_not_biased(layers, theta, size):
     """Totals of 32 replicates against closed forms, by Student's t: each of two ways out fails once in 2e9."""
-    cosine, found = totals(layers, theta, size, 11)
+    cosine, found = energies(layers, theta, size, 11)
     wanted = exact(layers, cosine)
     t = (found.mean(axis=0) - wanted) / (found.std(axis=0, ddof=1) / np.sqrt(len(found)))
     # Or it would not see much.
@@ -106,11 +106,12 @@ def test_usual_paths_are_all_followed(theta):
         assert split.effort.crowds[0] == CROWD * BATCH
 
 
+@pytest.mark.false_alarm(3e-9)
 def test_at_least_one_path_is_followed():
-    """Replicates that follow none would agree on darkness, without any error."""
+    """Replicates that follow none would agree on darkness, without any error. The mean of 200 within 6.2 sigma of t."""
     plan, split = prepared(Split, small(MIRROR, 60.0))
     split.effort = replace(split.effort, followed=np.array([0.5 / 4096]))
-    found = make_replicates(plan, split, 4096, 5, 200).sum(axis=(1, 2, 3, 4)) * 2.0
+    found = totals(plan, make_replicates(plan, split, 4096, 5, 200))[:, 0]
     wanted = exact(MIRROR, plan.light[0][2])[0]
     assert found.min() > 0.0
     assert found.mean() == pytest.approx(wanted, abs=6.2 * found.std(ddof=1) / np.sqrt(len(found)))
@@ -137,7 +138,7 @@ def test_the_scatter_of_seeds_is_what_fewer_paths_state(layers, theta):
     """
     plan, split = prepared(Split, small(layers, theta))
     wanted = exact(layers, plan.light[0][2])
-    found = np.array([make_replicates(plan, split, 1024, seed).sum(axis=(2, 3, 4)) * 2.0 for seed in range(150)])
+    found = np.array([totals(plan, make_replicates(plan, split, 1024, seed)) for seed in range(150)])
     count = found.shape[1]
     t = (found.mean(axis=1) - wanted) / (found.std(axis=1, ddof=1) / np.sqrt(count))
     square = np.mean(t**2, axis=0) / stats.t(count - 1).var()
