@@ -47,6 +47,7 @@ def whole():
     return simulate(parse_scene(SCENE), rays=float(RAYS), estimator="analog")
 
 
+@pytest.mark.slow
 def test_stopped_twice_it_goes_on_to_the_same_numbers(python, goniosim, folder, whole):
     process = python(IMPATIENT, *ASKED)
     wait_for(process, f"% of {RAYS} rays")
@@ -98,6 +99,7 @@ def test_a_killed_run_goes_on_from_its_last_checkpoint(python, goniosim, folder,
     assert sorted(path.name for path in folder.iterdir()) == ["scene.yaml", "small.h5", "study.yaml"]
 
 
+@pytest.mark.slow
 def test_what_another_version_left_is_begun_anew(python, goniosim, folder, whole, monkeypatch):
     process = python(IMPATIENT, *ASKED)
     wait_for(process, f"% of {RAYS} rays")

@@ -43,7 +43,7 @@ def totals(plan, replicates):
 
 
 def folded(plan, slices):
-    """Analog slices (..., columns) on the columns that tell all: where they are folded, the mean of both that are one."""
+    """Analog slices (..., columns) on the columns that tell all: where two of them are one, their mean."""
     if plan.width == plan.columns:
         return slices
     return (0.5 * (slices + slices[..., ::-1]))[..., : plan.width]

@@ -18,7 +18,7 @@ TRANSPARENT = [*OPAQUE[:-1], dielectric(1.0, 0.3)]
 
 
 @pytest.mark.false_alarm(1.3e-3, seeds=(3, 103, 203))
-@pytest.mark.parametrize("parametrization", ["classic", "half"])
+@pytest.mark.parametrize("parametrization", ["half", pytest.param("classic", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("layers", [OPAQUE, TRANSPARENT], ids=["opaque", "transparent"])
 def test_deep_stack(layers, parametrization, seed):
     """Every component, order and channel, in every cell with 100 hits, at 5 sigma.

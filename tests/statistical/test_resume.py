@@ -24,6 +24,7 @@ CASES = {
     "target of independent paths": (PLASTIC, {}, {"target": 0.2}),
     "target, two estimators": (SLAB, {}, {"target": 0.01}),
 }
+SOME_SLOW = [pytest.param(name, marks=[pytest.mark.slow] if "two" in name else []) for name in CASES]
 
 
 def scene_of(case):
@@ -61,7 +62,7 @@ class States:
         self.found.append(pack(session.state()))
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", SOME_SLOW)
 def test_from_any_checkpoint_to_the_same_bits(case):
     """From the first, the last and some between, on one thread and on three."""
     scene, states = scene_of(case), States()
@@ -73,7 +74,7 @@ def test_from_any_checkpoint_to_the_same_bits(case):
         assert content(again) == content(whole)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", SOME_SLOW)
 def test_stopped_again_and_again(case):
     """After every third piece: what is left each time is more than before, and leads to the same bits."""
     scene = scene_of(case)

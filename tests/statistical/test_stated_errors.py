@@ -45,7 +45,12 @@ def assert_right(layers, estimator, runs):
 @pytest.mark.false_alarm(1e-9)
 @pytest.mark.parametrize(
     ("estimator", "layers", "runs"),
-    [("analog", SLAB, 700), ("split", SLAB, 700), ("operator", METAL, 300), ("connection", PLASTIC, 300)],
+    [
+        ("analog", SLAB, 700),
+        pytest.param("split", SLAB, 700, marks=pytest.mark.slow),
+        ("operator", METAL, 300),
+        pytest.param("connection", PLASTIC, 300, marks=pytest.mark.slow),
+    ],
 )
 def test_audits_and_albedos(estimator, layers, runs):
     assert_right(layers, estimator, runs)
