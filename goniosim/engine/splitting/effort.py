@@ -33,8 +33,8 @@ _PATHS = 64
 _LOOK = 1 << 12
 _STAGES = 1 << 16
 # Times what a path is granted, above which its end is out of sight: the smallest replicate could not afford one of
-# them. Light that enters at 89.999 degrees stays a quarter of it.
-_OUT_OF_SIGHT = SMALLEST
+# them by far, which is a second or so. Light that enters at 89.9999 degrees stays a seventh of it.
+_OUT_OF_SIGHT = 16 * SMALLEST
 
 
 @dataclass(frozen=True)
