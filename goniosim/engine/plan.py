@@ -115,10 +115,14 @@ class Plan:
         )
 
     @property
+    def blacks(self):
+        """Where the index of an interface is that of the medium above, so that a conductor is black; (K, D) of bool."""
+        return (self.spectral[:, ETA] == 1.0) & (self.spectral[:, KAPPA] == 0.0)
+
+    @property
     def mirrors(self):
         """Whether each interface is smooth and reflects anything; ndarray of bool, shape (K,)."""
-        black = ((self.spectral[:, ETA] == 1.0) & (self.spectral[:, KAPPA] == 0.0)).all(axis=1)
-        reflects = np.where(self.kinds == SMOOTH_CONDUCTOR, ~black, self.etas != 1.0)
+        reflects = np.where(self.kinds == SMOOTH_CONDUCTOR, ~self.blacks.all(axis=1), self.etas != 1.0)
         return np.isin(self.kinds, (SMOOTH_DIELECTRIC, SMOOTH_CONDUCTOR)) & reflects
 
     def has_specular_chain(self, side):

@@ -7,7 +7,6 @@ import numpy as np
 from .layout import DOWN, UP
 from .stages import LAMBERT, OPAQUE, ROUGH_CONDUCTOR, SMOOTH_CONDUCTOR, SMOOTH_DIELECTRIC
 from .stages.lambert import RHO
-from .stages.smooth_conductor import ETA, KAPPA
 
 # Of products of indices, so that nothing is taken for totally reflected that might just pass.
 ROUNDING = 1e-13
@@ -62,9 +61,9 @@ def _cosine(height, index):
 
 def _reflected(plan, k):
     """What an interface reflects at the most, by channel."""
-    kind, spectral = plan.kinds[k], plan.spectral[k]
+    kind = plan.kinds[k]
     if kind == LAMBERT:
-        return spectral[RHO]
+        return plan.spectral[k, RHO]
     if kind in (SMOOTH_CONDUCTOR, ROUGH_CONDUCTOR):
-        return np.where((spectral[ETA] == 1.0) & (spectral[KAPPA] == 0.0), 0.0, 1.0)
+        return np.where(plan.blacks[k], 0.0, 1.0)
     return np.full(plan.n_distinct, float(plan.etas[k] != 1.0))

@@ -106,8 +106,8 @@ def _targets(scene: Scene) -> Iterator[Check]:
     result, analog = simulate(darker), simulate(darker, estimator="analog")
     value, stderr = result.albedo("reflection/internal")
     yield in_sigmas("albedo", value, stderr, adding.energies(darker).internal)
-    yield statement("it was reached", result.target_reached is True, "yes", result.target_reached)
-    yield statement("analog: it was reached", analog.target_reached is False, "no", analog.target_reached)
+    yield whether("it was reached", True, result.target_reached)
+    yield whether("analog: it was reached", False, analog.target_reached)
 
 
 def a_lobe_narrower_than_a_cell(scene: Scene) -> Iterator[Check]:
